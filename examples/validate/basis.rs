@@ -1,0 +1,5 @@
+use crate::report::Report;
+
+pub fn run() -> Report {
+    Report::default()
+}

@@ -1,0 +1,55 @@
+//! Recomputes the project's claims on this machine.
+//!
+//! `cargo run --example validate -- <topic> [--json FILE]` prints a table of numbers beside their limits, writes the
+//! numbers as flat JSON, and exits with 1 where a limit is missed.
+
+mod basis;
+mod beams;
+mod parity;
+mod report;
+mod spectrum;
+
+use clap::{Parser, ValueEnum};
+use std::{path::PathBuf, process::ExitCode};
+
+/// A claim that can be checked.
+#[derive(Clone, Copy, ValueEnum)]
+enum Topic {
+    /// The synthesised wind against its spectra, coherence, log law and period.
+    Spectrum,
+    /// The load bases against direct integration of each beam.
+    Basis,
+    /// The cantilever and the periodic steady state against closed forms and the Duhamel integral.
+    Beams,
+    /// The posed vertices of the graphics processor against the processor's.
+    Parity,
+}
+
+#[derive(Parser)]
+#[command(about = "Recomputes the claims of bevy_windwood on this machine")]
+struct Options {
+    /// What to check.
+    topic: Topic,
+    /// Writes the numbers to this file as flat JSON.
+    #[arg(long)]
+    json: Option<PathBuf>,
+}
+
+fn main() -> ExitCode {
+    let options = Options::parse();
+    let report = match options.topic {
+        Topic::Spectrum => spectrum::run(),
+        Topic::Basis => basis::run(),
+        Topic::Beams => beams::run(),
+        Topic::Parity => parity::run(),
+    };
+    report.print();
+    if let Some(path) = options.json {
+        let text = format!("{:#}\n", report.to_json());
+        if let Err(error) = std::fs::write(&path, text) {
+            eprintln!("cannot write {}: {error}", path.display());
+            return ExitCode::FAILURE;
+        }
+    }
+    if report.holds() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}

@@ -1,0 +1,53 @@
+//! What a topic finds: named numbers, each with the limit that the project holds itself to.
+
+use serde_json::{Map, Value, json};
+
+/// One measured number.
+pub struct Figure {
+    key: &'static str,
+    value: f64,
+    limit: Option<f64>,
+    note: &'static str,
+}
+
+/// The numbers of one topic, in the order in which they were found.
+#[derive(Default)]
+pub struct Report {
+    figures: Vec<Figure>,
+}
+
+impl Report {
+    /// Adds a number that must not exceed `limit`.
+    pub fn at_most(&mut self, key: &'static str, value: f64, limit: f64, note: &'static str) {
+        self.figures.push(Figure { key, value, limit: Some(limit), note });
+    }
+
+    /// Adds a number that is only reported.
+    pub fn tell(&mut self, key: &'static str, value: f64, note: &'static str) {
+        self.figures.push(Figure { key, value, limit: None, note });
+    }
+
+    /// Whether every number keeps its limit. A NaN keeps none.
+    pub fn holds(&self) -> bool {
+        self.figures.iter().all(|figure| figure.limit.is_none_or(|limit| figure.value <= limit))
+    }
+
+    /// Prints the numbers as a table.
+    pub fn print(&self) {
+        for Figure { key, value, limit, note } in &self.figures {
+            let verdict = match limit {
+                Some(limit) if value <= limit => format!("<= {limit:<8} ok"),
+                Some(limit) => format!("<= {limit:<8} MISSED"),
+                None => "reported".to_owned(),
+            };
+            println!("{key:<34} {value:>12.5e}   {verdict:<19}  {note}");
+        }
+    }
+
+    /// The numbers as a flat JSON object.
+    pub fn to_json(&self) -> Value {
+        let numbers: Map<String, Value> =
+            self.figures.iter().map(|figure| (figure.key.to_owned(), json!(figure.value))).collect();
+        Value::Object(numbers)
+    }
+}

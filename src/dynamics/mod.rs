@@ -1,0 +1,1 @@
+//! How a beam answers a load.
