@@ -1,0 +1,158 @@
+//! The wind everywhere and always: a mean profile, and a frozen realisation of turbulence that drifts with it.
+//!
+//! Taylor's hypothesis (Setas et al., equation 14): eddies are carried by the mean wind faster than they change, so the
+//! velocity at a distance x along the wind is what it was here x / U ago. The field is synthesised over time, and read at
+//!
+//! ```text
+//! tau = t - along / U_c
+//! ```
+//!
+//! The whole field drifts at one speed U_c, that of the reference height, so that it stays coherent in height.
+
+use super::{
+    FieldSettings, LogProfile, WindError, WindFrame,
+    interpolation::Taps,
+    synthesis::{self, Turbulence},
+};
+use bevy::math::{Vec3, Vec3A};
+
+/// The turbulence of a calm still drifts with this speed, m/s, so that places differ by finite times.
+const SLOWEST_DRIFT_M_S: f32 = 0.5;
+
+/// A wind field: velocity anywhere in the world at any time, periodic in time and across the wind.
+///
+/// Reading it allocates nothing and takes any position and time, negative ones too.
+pub struct WindField {
+    settings: FieldSettings,
+    frame: WindFrame,
+    profile: LogProfile,
+    turbulence: Turbulence,
+}
+
+impl WindField {
+    /// Synthesises the field that `settings` describe, or tells what is wrong with them.
+    ///
+    /// Takes some tenths of a second: meant for a loading screen or a background task. Uses all threads of Bevy's
+    /// compute pool where it exists; the result is the same, bit by bit, on any number of threads.
+    pub fn synthesise(settings: &FieldSettings) -> Result<Self, WindError> {
+        settings.validate()?;
+        let profile = LogProfile::from_reference(
+            settings.mean_speed_m_s,
+            settings.roughness_length_m,
+            settings.displacement_height_m,
+        );
+        Ok(Self {
+            frame: WindFrame::new(settings.direction),
+            turbulence: synthesis::synthesise(settings, &profile),
+            profile,
+            settings: settings.clone(),
+        })
+    }
+
+    /// Velocity of the air, m/s, in world coordinates: mean wind and turbulence.
+    ///
+    /// `position` is in world coordinates, m, with y the height above ground. Between samples the turbulence is
+    /// interpolated (Catmull-Rom); above the highest and below the lowest level that level's turbulence holds.
+    /// A position or time that is not finite counts as 0.
+    pub fn sample(&self, position: Vec3, time_s: f64) -> Vec3 {
+        let mean = self.frame.along * self.profile.speed_at(position.y);
+        mean + self.frame.to_world(self.turbulence_at(position, time_s))
+    }
+
+    /// The turbulent part of [`sample`](Self::sample), m/s, in wind coordinates (along, up, across).
+    pub fn turbulence_at(&self, position: Vec3, time_s: f64) -> Vec3 {
+        let position = self.frame.to_wind(finite_or_zero(position));
+        let resolution = &self.settings.resolution;
+        let time_samples = resolution.time_samples as usize;
+        let tau_s = if time_s.is_finite() { time_s } else { 0.0 } - self.delay_s(position.x);
+        let time = Taps::periodic(tau_s / f64::from(resolution.time_step_s), time_samples);
+        let across = f64::from(position.z) / f64::from(resolution.column_spacing_m);
+        let column = Taps::periodic(across, resolution.columns as usize);
+        let level = self.level_taps(position.y);
+
+        let mut velocity = Vec3A::ZERO;
+        for (column, column_weight) in column.indices.into_iter().zip(column.weights) {
+            for (level, level_weight) in level.indices.into_iter().zip(level.weights) {
+                let series = self.series(column, level);
+                let [a, b, c, d] = time.indices.map(|index| series[index]);
+                let in_time = a * time.weights[0] + b * time.weights[1] + c * time.weights[2] + d * time.weights[3];
+                velocity += in_time * (column_weight * level_weight);
+            }
+        }
+        velocity.into()
+    }
+
+    /// One velocity per time sample at column `column` (counted round the period) and `height_m` above ground, m/s, in
+    /// wind coordinates (along with the mean wind, up, across). Replaces what is in `out`.
+    ///
+    /// Column c is at c times the column spacing across the wind; the samples are those of along = 0.
+    pub fn column_velocities(&self, column: usize, height_m: f32, out: &mut Vec<Vec3>) {
+        let resolution = &self.settings.resolution;
+        let column = column % resolution.columns as usize;
+        let mean = Vec3A::X * self.profile.speed_at(height_m);
+        let Taps { indices, weights } = self.level_taps(height_m);
+        let [a, b, c, d] = indices.map(|level| self.series(column, level));
+        out.clear();
+        out.extend((0..resolution.time_samples as usize).map(|time| {
+            let turbulence = a[time] * weights[0] + b[time] * weights[1] + c[time] * weights[2] + d[time] * weights[3];
+            Vec3::from(mean + turbulence)
+        }));
+    }
+
+    /// How much later than at along = 0 the same turbulence passes a place `along_m` down the wind, s.
+    pub fn delay_s(&self, along_m: f32) -> f64 {
+        f64::from(along_m) / f64::from(self.convective_speed_m_s())
+    }
+
+    /// What the field was made from.
+    pub fn settings(&self) -> &FieldSettings {
+        &self.settings
+    }
+
+    /// The directions of its wind coordinates.
+    pub fn frame(&self) -> &WindFrame {
+        &self.frame
+    }
+
+    /// Its mean wind.
+    pub fn profile(&self) -> &LogProfile {
+        &self.profile
+    }
+
+    /// The time after which it repeats, s.
+    pub fn period_s(&self) -> f64 {
+        self.settings.resolution.period_s()
+    }
+
+    /// The distance across the wind after which it repeats, m.
+    pub fn width_m(&self) -> f64 {
+        self.settings.resolution.width_m()
+    }
+
+    /// The speed with which the turbulence drifts along, m/s: the mean speed at 10 m, but at least 0.5.
+    pub fn convective_speed_m_s(&self) -> f32 {
+        self.settings.mean_speed_m_s.max(SLOWEST_DRIFT_M_S)
+    }
+
+    /// How much of the variance of u, v and w (along, across, up) lies in the band of frequencies that the field
+    /// resolves, as the mean over its levels; 0 in a calm.
+    pub fn resolved_fraction(&self) -> [f32; 3] {
+        self.turbulence.resolved_fraction
+    }
+
+    fn level_taps(&self, height_m: f32) -> Taps {
+        let resolution = &self.settings.resolution;
+        Taps::held(height_m / resolution.level_spacing_m - 1.0, resolution.levels as usize)
+    }
+
+    fn series(&self, column: usize, level: usize) -> &[Vec3A] {
+        let resolution = &self.settings.resolution;
+        let samples = resolution.time_samples as usize;
+        let start = (column * resolution.levels as usize + level) * samples;
+        &self.turbulence.velocities[start..start + samples]
+    }
+}
+
+fn finite_or_zero(position: Vec3) -> Vec3 {
+    Vec3::select(position.is_finite_mask(), position, Vec3::ZERO)
+}
