@@ -1,6 +1,72 @@
-//! Forests that move in a physically synthesised wind.
+//! Forests that move in a physically synthesised wind, for Bevy.
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use bevy_windwood::prelude::*;
+//!
+//! App::new()
+//!     .add_plugins((DefaultPlugins, WindwoodPlugins))
+//!     .insert_resource(Wind { speed: 8.0, direction: Dir2::X, ..default() }) // m/s at 10 m above ground
+//!     .add_systems(Startup, |mut commands: Commands, assets: Res<AssetServer>| {
+//!         commands.spawn((Tree::new(assets.load("species/oak.species.ron")), Transform::default()));
+//!     })
+//!     .run();
+//! ```
+//!
+//! # How it works
+//! Once per wind, off the frame: a periodic field of turbulent wind is synthesised from measured spectra
+//! ([`wind`]); from it the response of unit cantilever beams is computed exactly, for a ladder of natural frequencies,
+//! for each lateral place and each moment ([`dynamics`]). Once per species: trees are grown and baked into models whose
+//! every branch knows its frequency and its exposure ([`tree`]). Then each frame a branch, of any tree, costs one
+//! interpolated fetch from that table and a few multiplications, in the vertex shader ([`sway`]).
+//!
+//! # Rooms
+//! | room | what | knows |
+//! |---|---|---|
+//! | [`wind`] | spectra, field, gusts, [`Wind`](wind::Wind), [`WindCell`](wind::WindCell) | nobody |
+//! | [`dynamics`] | cantilevers, oscillators, load bases, response tables, poses; no ECS | nobody |
+//! | [`tree`] | species, growth, meshes, [`Tree`](tree::Tree) | dynamics |
+//! | [`sway`] | trees in the wind, on the processor and in shaders | all three |
+
+mod schedule;
 
 pub mod dynamics;
 pub mod sway;
 pub mod tree;
 pub mod wind;
+
+pub use schedule::WindwoodSystems;
+
+use bevy::app::{PluginGroup, PluginGroupBuilder};
+
+/// What a game needs: `use bevy_windwood::prelude::*;`.
+pub mod prelude {
+    pub use crate::{
+        WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
+        sway::{ActiveSway, SwaySettings},
+        tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Species, Tree, TreeBeams, TreeLeaves},
+        wind::{ActiveWind, Wind, WindCell, WindClock},
+    };
+}
+
+/// Everything: add it after `DefaultPlugins`.
+pub struct WindwoodPlugins;
+
+impl PluginGroup for WindwoodPlugins {
+    fn build(self) -> PluginGroupBuilder {
+        let group = PluginGroupBuilder::start::<Self>().add_group(WindwoodMinimalPlugins);
+        #[cfg(feature = "render")]
+        let group = group.add(sway::SwayDrawPlugin).add(wind::WindGizmoPlugin);
+        group
+    }
+}
+
+/// The wind, the trees and their motion without any drawing: for servers and tests. It needs Bevy's
+/// `MinimalPlugins`, `AssetPlugin` and `TransformPlugin`.
+pub struct WindwoodMinimalPlugins;
+
+impl PluginGroup for WindwoodMinimalPlugins {
+    fn build(self) -> PluginGroupBuilder {
+        PluginGroupBuilder::start::<Self>().add(wind::WindPlugin).add(tree::TreePlugin).add(sway::SwayPlugin)
+    }
+}

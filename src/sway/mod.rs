@@ -1,1 +1,36 @@
-//! Trees in the wind.
+//! Trees in the wind: the tables that join wind, dynamics and trees, and the systems that pose every tree from them.
+//!
+//! - `response` turns a wind field into tables, once per wind, off the frame.
+//! - `active` fades from the tables of one wind to those of the next.
+//! - `articulated` poses the trees that ask for it on the processor.
+//! - With the feature `render`, `draw` puts meshes and materials on trees, `upload` writes the frame's clock, and
+//!   `shaders/sway.wgsl` poses every vertex: no work per tree and frame on the processor.
+
+mod active;
+mod articulated;
+mod plugin;
+mod response;
+
+#[cfg(feature = "render")]
+mod draw;
+#[cfg(feature = "render")]
+mod draw_plugin;
+#[cfg(feature = "render")]
+mod looks;
+#[cfg(feature = "render")]
+mod material;
+#[cfg(feature = "render")]
+mod rows;
+#[cfg(feature = "render")]
+mod upload;
+
+pub use active::{ActiveSway, WeightedResponse};
+pub use articulated::TreePose;
+pub use plugin::SwayPlugin;
+pub use response::{SwaySettings, WindResponse};
+
+#[cfg(feature = "render")]
+pub use {
+    draw::{DrawPath, Foliage},
+    draw_plugin::SwayDrawPlugin,
+};

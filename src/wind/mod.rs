@@ -19,21 +19,35 @@
 //!
 //! Everything in this room but its plugin is plain arithmetic without an app.
 
+mod cells;
+mod clock;
 mod coherence;
+mod cross_fade;
+mod current;
 mod error;
 mod field;
 mod frame;
+#[cfg(feature = "render")]
+mod gizmos;
 mod interpolation;
 mod load;
+mod plugin;
 mod profile;
 mod settings;
 mod spectrum;
 mod synthesis;
 
+pub use cells::WindCell;
+pub use clock::WindClock;
+pub use cross_fade::{CrossFade, FadeStep};
+pub use current::{ActiveWind, DEFAULT_FADE_S, Wind};
 pub use error::WindError;
 pub use field::WindField;
 pub use frame::WindFrame;
+#[cfg(feature = "render")]
+pub use gizmos::{WindGizmoPlugin, WindGizmos};
 pub use load::{AIR_DENSITY_KG_M3, cross_flow_pressure, drag_per_length, lift_per_length};
+pub use plugin::WindPlugin;
 pub use profile::{LogProfile, REFERENCE_HEIGHT_M, VON_KARMAN};
 pub use settings::{FieldResolution, FieldSettings, TurbulenceBand};
 pub use spectrum::{CoherenceDecay, DecayCoefficients, TurbulenceComponent};

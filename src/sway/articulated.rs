@@ -1,0 +1,159 @@
+//! Trees whose beams and leaves are entities that follow the wind, on the processor.
+
+use super::{
+    active::{ActiveSway, FLUTTER_PERIOD_S, leaf_clock_s},
+    response::WindResponse,
+};
+use crate::{
+    dynamics::{
+        leaf,
+        pose::{BeamPose, PoseCache, TreePlacement, pose},
+    },
+    tree::{Articulated, Beam, BeamOf, Grove, Grown, Leaf, LeafOf, Tree, TreeBeams, TreeLeaves, TreeModel},
+    wind::WindClock,
+};
+use bevy::prelude::*;
+
+/// The pose of an articulated tree this frame, beam by beam, in the order of its skeleton.
+#[derive(Component, Default)]
+pub struct TreePose {
+    beams: Vec<BeamPose>,
+    /// Wind at the tree in tree-local axes, m/s.
+    wind: Vec3,
+    caches: Vec<PoseCache>,
+    /// What the caches were made for.
+    made_for: Option<(u64, AssetId<TreeModel>, GlobalTransform)>,
+}
+
+impl TreePose {
+    /// One pose a beam, tree-local.
+    pub fn beams(&self) -> &[BeamPose] {
+        &self.beams
+    }
+}
+
+/// Gives trees that ask for it entities for their beams and leaves, anew when the model has changed.
+pub(super) fn articulate_trees(
+    mut commands: Commands,
+    models: Res<Assets<TreeModel>>,
+    trees: Query<(Entity, &Articulated, &Grown), Or<(Changed<Articulated>, Changed<Grown>)>>,
+    mut retired: RemovedComponents<Articulated>,
+) {
+    for entity in retired.read() {
+        if let Ok(mut tree) = commands.get_entity(entity) {
+            tree.despawn_related::<TreeBeams>().despawn_related::<TreeLeaves>().remove::<TreePose>();
+        }
+    }
+    for (entity, articulated, grown) in &trees {
+        let Some(model) = models.get(&grown.model) else { continue };
+        let mut tree = commands.entity(entity);
+        tree.despawn_related::<TreeBeams>().despawn_related::<TreeLeaves>().insert(TreePose::default());
+        for (index, beam) in (0..).zip(&model.skeleton.beams) {
+            if beam.order <= articulated.deepest_order {
+                commands.spawn((Beam { index, at: 1.0 }, BeamOf(entity)));
+            }
+        }
+        if articulated.leaves {
+            commands.spawn_batch(
+                (0..model.skeleton.clusters.len() as u32)
+                    .map(move |index| (Leaf { index }, LeafOf(entity)))
+                    .collect::<Vec<_>>(),
+            );
+        }
+    }
+}
+
+/// Poses every articulated tree, tree by tree in parallel.
+pub(super) fn pose_trees(
+    sway: Res<ActiveSway>,
+    clock: Res<WindClock>,
+    models: Res<Assets<TreeModel>>,
+    mut trees: Query<(&Grown, &Transform, &GlobalTransform, Has<ChildOf>, &mut TreePose)>,
+) {
+    trees.par_iter_mut().for_each(|(grown, transform, global, is_child, mut tree)| {
+        let Some(model) = models.get(&grown.model) else { return };
+        let stands = if is_child { *global } else { GlobalTransform::from(*transform) };
+        tree.refresh(&sway, grown.model.id(), model, stands);
+        tree.follow(&sway, clock.time_s, model, stands);
+    });
+}
+
+impl TreePose {
+    /// Looks the load coefficients up again when the wind, the model or the tree's place is another.
+    fn refresh(&mut self, sway: &ActiveSway, id: AssetId<TreeModel>, model: &TreeModel, stands: GlobalTransform) {
+        let key = (sway.generation(), id, stands);
+        if self.made_for == Some(key) && self.caches.len() == sway.now().count() {
+            return;
+        }
+        self.beams.resize(model.beams.len(), BeamPose::default());
+        self.caches.clear();
+        for wind in sway.now() {
+            let placement = placement(wind.response, stands);
+            self.caches.push(PoseCache::new(&model.beams, &wind.response.basis, &wind.response.table.classes, placement));
+        }
+        self.made_for = Some(key);
+    }
+
+    fn follow(&mut self, sway: &ActiveSway, time_s: f64, model: &TreeModel, stands: GlobalTransform) {
+        let local_from_world = stands.rotation().inverse();
+        self.wind = Vec3::ZERO;
+        for (cache, wind) in self.caches.iter_mut().zip(sway.now()) {
+            let (column, tau_s) = wind.response.place(stands.translation(), time_s);
+            cache.listen(&wind.response.table, column, tau_s, wind.weight);
+            let velocity = wind.response.table.velocity(column, tau_s).truncate();
+            self.wind += wind.weight * (local_from_world * wind.response.field.frame().to_world(velocity));
+        }
+        pose(&model.beams, &self.caches, &mut self.beams);
+    }
+}
+
+fn placement(response: &WindResponse, stands: GlobalTransform) -> TreePlacement {
+    let frame = response.field.frame();
+    let wind_from_world = Mat3::from_cols(frame.along, Vec3::Y, frame.across).transpose();
+    let wind_from_local = Quat::from_mat3(&wind_from_world) * stands.rotation();
+    TreePlacement { to_wind: wind_from_local, scale: stands.scale().y }
+}
+
+/// Moves beam entities to where their cross-sections are.
+pub(super) fn pose_beams(
+    models: Res<Assets<TreeModel>>,
+    trees: Query<(&Grown, &Transform, &GlobalTransform, Has<ChildOf>, &TreePose), Without<Beam>>,
+    mut beams: Query<(&Beam, &BeamOf, &mut Transform)>,
+) {
+    beams.par_iter_mut().for_each(|(beam, of, mut transform)| {
+        let Ok((grown, tree_transform, global, is_child, tree)) = trees.get(of.0) else { return };
+        let Some(model) = models.get(&grown.model) else { return };
+        let index = beam.index as usize;
+        let (Some(rest), Some(pose)) = (model.beams.get(index), tree.beams.get(index)) else { return };
+        let stands = if is_child { global.compute_transform() } else { *tree_transform };
+        let s = if beam.at.is_finite() { beam.at.clamp(0.0, 1.0) } else { 1.0 };
+        let path = model.skeleton.beams[index].path(s);
+        let (position, rotation) = pose.carry(rest, s, path);
+        let upright = Quat::from_rotation_arc(Vec3::Y, rest.direction);
+        *transform = stands * Transform::from_translation(position).with_rotation(rotation * upright);
+    });
+}
+
+/// Moves leaf entities to their anchors and turns them into the wind.
+pub(super) fn turn_leaves(
+    grove: Res<Grove>,
+    clock: Res<WindClock>,
+    models: Res<Assets<TreeModel>>,
+    trees: Query<(&Tree, &Grown, &Transform, &GlobalTransform, Has<ChildOf>, &TreePose), Without<Leaf>>,
+    mut leaves: Query<(&Leaf, &LeafOf, &mut Transform)>,
+) {
+    let seconds = leaf_clock_s(clock.time_s);
+    leaves.par_iter_mut().for_each(|(leaf, of, mut transform)| {
+        let Ok((tree, grown, tree_transform, global, is_child, pose)) = trees.get(of.0) else { return };
+        let (Some(species), Some(model)) = (grove.get(tree.species.id()), models.get(&grown.model)) else { return };
+        let Some(cluster) = model.skeleton.clusters.get(leaf.index as usize) else { return };
+        let beam = cluster.beam as usize;
+        let (Some(rest), Some(beam_pose)) = (model.beams.get(beam), pose.beams.get(beam)) else { return };
+        let stands = if is_child { global.compute_transform() } else { *tree_transform };
+        let (anchor, carried) = beam_pose.carry(rest, cluster.at, cluster.anchor);
+        let axis = carried * cluster.axis;
+        let turn = leaf::turn(&species.species.foliage.response, axis, pose.wind, seconds, FLUTTER_PERIOD_S as f32, cluster.phase);
+        let upright = Quat::from_rotation_arc(Vec3::Y, cluster.axis);
+        *transform = stands * Transform::from_translation(anchor).with_rotation(turn * carried * upright);
+    });
+}

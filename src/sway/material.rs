@@ -1,0 +1,123 @@
+//! The material that poses trees in the vertex shader.
+
+use super::active::FLUTTER_PERIOD_S;
+use crate::dynamics::leaf::LeafResponse;
+use bevy::{
+    mesh::{MeshVertexAttribute, MeshVertexBufferLayoutRef, VertexFormat},
+    pbr::{ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline},
+    prelude::*,
+    render::{
+        render_resource::{AsBindGroup, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError},
+        storage::ShaderBuffer,
+    },
+    shader::ShaderRef,
+};
+
+/// Beam, place on it, leaf phase, light: `sway` of the shader.
+pub const ATTRIBUTE_SWAY: MeshVertexAttribute = MeshVertexAttribute::new("Sway", 0x5357_4159, VertexFormat::Float32x4);
+/// Main axis of a leaf at rest and its tint: `axis` of the shader.
+pub const ATTRIBUTE_LEAF_AXIS: MeshVertexAttribute =
+    MeshVertexAttribute::new("LeafAxis", 0x4c41_5849, VertexFormat::Float32x4);
+/// Where a leaf hangs at rest: `anchor` of the shader.
+pub const ATTRIBUTE_LEAF_ANCHOR: MeshVertexAttribute =
+    MeshVertexAttribute::new("LeafAnchor", 0x4c41_4e43, VertexFormat::Float32x4);
+
+/// Bits of an instance's tag that hold its model's first row in the beam table; the rest is its tint.
+pub(crate) const TAG_BEAM_BITS: u32 = 24;
+
+/// A standard material whose vertices sway.
+pub type SwayMaterial = ExtendedMaterial<StandardMaterial, SwayExtension>;
+
+/// The tables that the vertex shader reads. They are shared and written in place, so that the material itself never
+/// changes: a changed material would re-extract every tree that wears it.
+#[derive(Asset, AsBindGroup, Reflect, Clone, Debug)]
+pub struct SwayExtension {
+    /// The wind that fades out, or the only one.
+    #[storage(100, read_only)]
+    pub wind_a: Handle<ShaderBuffer>,
+    /// The wind that fades in.
+    #[storage(101, read_only)]
+    pub wind_b: Handle<ShaderBuffer>,
+    /// The beams of every variant of the species.
+    #[storage(102, read_only)]
+    pub beams: Handle<ShaderBuffer>,
+    /// The clock of the frame.
+    #[storage(103, read_only)]
+    pub frame: Handle<ShaderBuffer>,
+    /// How the leaves turn.
+    #[uniform(104)]
+    pub leaf: LeafUniform,
+}
+
+/// `LeafResponse` of the shader.
+#[derive(ShaderType, Reflect, Clone, Copy, Debug, Default)]
+pub struct LeafUniform {
+    turn: f32,
+    onset_speed_m_s: f32,
+    full_speed_m_s: f32,
+    flutter_angle_rad: f32,
+    flutter_frequency_hz: f32,
+    period_s: f32,
+    padding: Vec2,
+}
+
+impl From<&LeafResponse> for LeafUniform {
+    fn from(leaf: &LeafResponse) -> Self {
+        Self {
+            turn: leaf.turn,
+            onset_speed_m_s: leaf.onset_speed_m_s,
+            full_speed_m_s: leaf.full_speed_m_s,
+            flutter_angle_rad: leaf.flutter_angle_rad,
+            flutter_frequency_hz: leaf.flutter_frequency_hz,
+            period_s: FLUTTER_PERIOD_S as f32,
+            padding: Vec2::ZERO,
+        }
+    }
+}
+
+const SWAY_SHADER: &str = "embedded://bevy_windwood/sway/shaders/sway.wgsl";
+
+impl MaterialExtension for SwayExtension {
+    fn vertex_shader() -> ShaderRef {
+        SWAY_SHADER.into()
+    }
+
+    fn prepass_vertex_shader() -> ShaderRef {
+        SWAY_SHADER.into()
+    }
+
+    fn deferred_vertex_shader() -> ShaderRef {
+        SWAY_SHADER.into()
+    }
+
+    /// Runs for the main pass, the prepass and the shadow pass. Bevy's own vertex locations differ between them, so all
+    /// get one layout; colour and tangent come out of the vertex stage instead of the mesh.
+    fn specialize(
+        _: &MaterialExtensionPipeline,
+        descriptor: &mut RenderPipelineDescriptor,
+        layout: &MeshVertexBufferLayoutRef,
+        _: MaterialExtensionKey<Self>,
+    ) -> Result<(), SpecializedMeshPipelineError> {
+        let leaves = layout.0.contains(ATTRIBUTE_LEAF_AXIS);
+        let mut attributes = vec![
+            Mesh::ATTRIBUTE_POSITION.at_shader_location(0),
+            Mesh::ATTRIBUTE_NORMAL.at_shader_location(1),
+            Mesh::ATTRIBUTE_UV_0.at_shader_location(2),
+            ATTRIBUTE_SWAY.at_shader_location(8),
+        ];
+        if leaves {
+            attributes.push(ATTRIBUTE_LEAF_AXIS.at_shader_location(9));
+            attributes.push(ATTRIBUTE_LEAF_ANCHOR.at_shader_location(10));
+        }
+        descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];
+
+        let shader_defs = [if leaves { "WINDWOOD_LEAVES" } else { "VERTEX_TANGENTS" }, "VERTEX_COLORS"];
+        for shader_def in shader_defs {
+            descriptor.vertex.shader_defs.push(shader_def.into());
+            if let Some(fragment) = &mut descriptor.fragment {
+                fragment.shader_defs.push(shader_def.into());
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,80 @@
+//! The tables as the shaders read them. Each layout here has its twin in `shaders/pose.wgsl`.
+
+use crate::{dynamics::pose::BeamDynamics, sway::response::WindResponse};
+use bytemuck::{Pod, Zeroable};
+
+/// `BeamRow` of the shader: one beam of a model.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(crate) struct BeamRow {
+    base: [f32; 3],
+    length_m: f32,
+    direction: [f32; 3],
+    attach: f32,
+    gain: f32,
+    class_coordinate: f32,
+    parent: u32,
+    padding: u32,
+}
+
+impl From<&BeamDynamics> for BeamRow {
+    fn from(beam: &BeamDynamics) -> Self {
+        Self {
+            base: beam.base.to_array(),
+            length_m: beam.length_m,
+            direction: beam.direction.to_array(),
+            attach: beam.attach,
+            gain: beam.gain,
+            class_coordinate: beam.class,
+            parent: beam.parent,
+            padding: 0,
+        }
+    }
+}
+
+/// `Frame` of the shader: the clock of one frame.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct FrameRow {
+    /// Now and one frame ago, s, each wrapped into the periods of slot A and slot B: a now, b now, a before, b before.
+    pub time_s: [f32; 4],
+    /// Weight of slot B now and one frame ago.
+    pub blend: [f32; 2],
+    /// Now and one frame ago in the period of the leaves' flutter, s.
+    pub leaf_time_s: [f32; 2],
+    /// 1 once there is a wind, 0 before.
+    pub ready: f32,
+    /// Keeps the row a multiple of 16 bytes.
+    pub padding: [f32; 3],
+}
+
+/// Rows of `vec4` before the direction map in a slot; `HEADER` of the shader.
+const HEADER: usize = 4;
+
+/// One wind as the shader reads it: header, direction map, responses, velocities.
+pub(crate) fn slot_rows(wind: &WindResponse) -> Vec<[f32; 4]> {
+    let (frame, table, map) = (wind.field.frame(), &wind.table, wind.basis.map());
+    let along = frame.along;
+    let across = frame.across;
+    let spacing = wind.field.settings().resolution.column_spacing_m;
+    let mut rows = Vec::with_capacity(HEADER + 4 * map.texels().len() + table.values.len() + table.velocities.len());
+    rows.push([along.x, along.y, along.z, wind.field.convective_speed_m_s()]);
+    rows.push([across.x, across.y, across.z, spacing]);
+    rows.push([table.classes.count as f32, table.columns as f32, table.samples as f32, table.time_step_s]);
+    rows.push([map.size() as f32, 1.0 / table.classes.ratio.ln(), 0.0, 0.0]);
+    rows.extend_from_slice(bytemuck::cast_slice(map.texels()));
+    rows.extend(table.values.iter().map(|value| value.to_array()));
+    rows.extend(table.velocities.iter().map(|value| value.to_array()));
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_have_the_sizes_that_the_shader_strides_by() {
+        assert_eq!(size_of::<BeamRow>(), 48);
+        assert_eq!(size_of::<FrameRow>(), 48);
+    }
+}

@@ -1,0 +1,118 @@
+//! Trees as entities.
+
+use super::{model::TreeModel, species::Species};
+use bevy::prelude::*;
+
+/// A tree of a species, standing at its `Transform` (uniform scale).
+///
+/// Once the species is loaded and baked the entity gets a [`Grown`] model, and, where there is rendering, one draw for
+/// its wood and one for its leaves; all trees of one model are drawn together.
+#[derive(Component, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Component)]
+#[require(Transform, Visibility)]
+pub struct Tree {
+    /// What grows here.
+    pub species: Handle<Species>,
+    /// Chooses among the species' variants and tints. `None` takes it from the place, so that equal forests look equal.
+    pub seed: Option<u64>,
+}
+
+impl Tree {
+    /// A tree whose variant follows from its place.
+    pub fn new(species: Handle<Species>) -> Self {
+        Self { species, seed: None }
+    }
+
+    /// Sets the seed that chooses the variant.
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.seed = Some(seed);
+        self
+    }
+
+    /// The seed in force at `place`: a well-mixed number, the same on every run.
+    pub fn seed_at(&self, place: Vec3) -> u64 {
+        let raw = self.seed.unwrap_or_else(|| {
+            let [x, y, z] = place.to_array().map(|coordinate| u64::from(coordinate.to_bits()));
+            x ^ y.rotate_left(21) ^ z.rotate_left(42)
+        });
+        mixed(raw)
+    }
+}
+
+/// The finaliser of SplitMix64 (Steele, Lea & Flood 2014): nearby numbers become unrelated ones.
+fn mixed(mut x: u64) -> u64 {
+    x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+/// The model of a tree whose species has been baked. Written by [`WindwoodSystems::Grow`](crate::WindwoodSystems::Grow).
+#[derive(Component, Clone, Debug, PartialEq)]
+#[component(immutable)]
+pub struct Grown {
+    /// The baked variant.
+    pub model: Handle<TreeModel>,
+    /// Its number among the species' variants.
+    pub variant: usize,
+    /// The tree's own well-mixed seed, for tints and the like.
+    pub seed: u64,
+}
+
+/// Asks for a tree's beams and leaves as entities whose `Transform`s follow the wind, for things that hang on branches,
+/// for servers, for tests. It costs work every frame: give it to the trees that need it.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
+#[reflect(Component, Default)]
+pub struct Articulated {
+    /// Beams up to this order get entities: 0 only the trunk, 1 its branches as well, and so on.
+    pub deepest_order: u8,
+    /// Whether leaf clusters get entities as well.
+    pub leaves: bool,
+}
+
+impl Default for Articulated {
+    fn default() -> Self {
+        Self { deepest_order: u8::MAX, leaves: true }
+    }
+}
+
+/// One beam of an [`Articulated`] tree. Its `Transform`, in world space, rides on the cross-section at `at`, with +Y along
+/// the beam: hang a lantern there as a child. It is no child of the tree, whose draw would be extracted anew each frame.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Component)]
+#[require(Transform, Visibility)]
+pub struct Beam {
+    /// Index into the skeleton's beams.
+    pub index: u32,
+    /// Place on the beam: 0 its root, 1 its tip. Yours to change.
+    pub at: f32,
+}
+
+/// The tree that a [`Beam`] belongs to. Despawning the tree despawns its beams.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+#[relationship(relationship_target = TreeBeams)]
+pub struct BeamOf(pub Entity);
+
+/// The [`Beam`]s of an articulated tree, in the order of the skeleton's.
+#[derive(Component, Debug, Default)]
+#[relationship_target(relationship = BeamOf, linked_spawn)]
+pub struct TreeBeams(Vec<Entity>);
+
+/// One leaf cluster of an [`Articulated`] tree. Its `Transform`, in world space, is at the anchor, with +Y along the main axis.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
+#[reflect(Component)]
+#[require(Transform, Visibility)]
+pub struct Leaf {
+    /// Index into the skeleton's leaf clusters.
+    pub index: u32,
+}
+
+/// The tree that a [`Leaf`] belongs to. Despawning the tree despawns its leaves.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+#[relationship(relationship_target = TreeLeaves)]
+pub struct LeafOf(pub Entity);
+
+/// The [`Leaf`]s of an articulated tree, in the order of the skeleton's clusters.
+#[derive(Component, Debug, Default)]
+#[relationship_target(relationship = LeafOf, linked_spawn)]
+pub struct TreeLeaves(Vec<Entity>);

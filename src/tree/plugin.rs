@@ -1,0 +1,30 @@
+//! Registers trees: the species asset and its loader, the baked models, the components.
+
+use super::{
+    components::{Articulated, Beam, Leaf, Tree},
+    grove::{Grove, SpeciesBaked, bake_species, grow_trees, receive_models},
+    loader::SpeciesLoader,
+    model::TreeModel,
+    species::Species,
+};
+use crate::schedule::WindwoodSystems;
+use bevy::prelude::*;
+
+/// Trees without drawing and without motion: loads and bakes species, gives [`Tree`] entities their models.
+pub struct TreePlugin;
+
+impl Plugin for TreePlugin {
+    fn build(&self, app: &mut App) {
+        app.init_asset::<Species>()
+            .init_asset::<TreeModel>()
+            .init_asset_loader::<SpeciesLoader>()
+            .register_asset_reflect::<Species>()
+            .register_type::<Tree>()
+            .register_type::<Articulated>()
+            .register_type::<Beam>()
+            .register_type::<Leaf>()
+            .init_resource::<Grove>()
+            .add_message::<SpeciesBaked>()
+            .add_systems(Update, (bake_species, receive_models, grow_trees).chain().in_set(WindwoodSystems::Grow));
+    }
+}

@@ -1,0 +1,132 @@
+//! Going over from one thing to the next without a jump.
+//!
+//! A change of the wind is built in the background and takes over with a smooth weight. While one fade runs, the newest
+//! successor waits: fades never overlap, so two states are all there ever is.
+
+/// A value that changes by fading: `from` alone, or `from` and `to` with a weight between them.
+#[derive(Clone, Debug)]
+pub struct CrossFade<T> {
+    from: T,
+    to: Option<T>,
+    waiting: Option<(T, f32)>,
+    elapsed_s: f32,
+    duration_s: f32,
+}
+
+/// What a step of the fade brought about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FadeStep {
+    /// Nothing runs.
+    Rest,
+    /// A new successor has begun to fade in; its weight is still 0.
+    Began,
+    /// A fade is on its way.
+    Running,
+    /// The successor has taken over and is now the only one.
+    Finished,
+}
+
+impl<T> CrossFade<T> {
+    /// Starts with one value.
+    pub fn new(first: T) -> Self {
+        Self { from: first, to: None, waiting: None, elapsed_s: 0.0, duration_s: 0.0 }
+    }
+
+    /// Hands over a successor that takes `duration_s` seconds to fade in (0, less or NaN: one step). It begins with the
+    /// next step that finds no fade running; of several, the last counts.
+    pub fn succeed(&mut self, next: T, duration_s: f32) {
+        self.waiting = Some((next, duration_s.max(0.0)));
+    }
+
+    /// Moves on by `delta_s` seconds.
+    pub fn advance(&mut self, delta_s: f32) -> FadeStep {
+        if self.to.is_some() {
+            self.elapsed_s += delta_s.max(0.0);
+            if self.elapsed_s < self.duration_s {
+                return FadeStep::Running;
+            }
+            if let Some(to) = self.to.take() {
+                self.from = to;
+            }
+            return FadeStep::Finished;
+        }
+        match self.waiting.take() {
+            Some((next, duration_s)) => {
+                self.to = Some(next);
+                self.elapsed_s = 0.0;
+                self.duration_s = duration_s;
+                FadeStep::Began
+            }
+            None => FadeStep::Rest,
+        }
+    }
+
+    /// The value that fades out, or the only one.
+    pub fn from(&self) -> &T {
+        &self.from
+    }
+
+    /// The value that fades in.
+    pub fn to(&self) -> Option<&T> {
+        self.to.as_ref()
+    }
+
+    /// The value that will be there when all is done.
+    pub fn newest(&self) -> &T {
+        self.waiting.as_ref().map(|(next, _)| next).or(self.to.as_ref()).unwrap_or(&self.from)
+    }
+
+    /// Weight of [`to`](Self::to), 0..1, with zero slope at both ends.
+    pub fn weight(&self) -> f32 {
+        if self.to.is_none() {
+            return 0.0;
+        }
+        let x = if self.duration_s > 0.0 { (self.elapsed_s / self.duration_s).clamp(0.0, 1.0) } else { 0.0 };
+        x * x * (3.0 - 2.0 * x)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weight_goes_from_zero_to_one_and_the_successor_takes_over() {
+        let mut fade = CrossFade::new('a');
+        assert_eq!(fade.advance(0.1), FadeStep::Rest);
+        fade.succeed('b', 1.0);
+        assert_eq!(fade.advance(0.1), FadeStep::Began);
+        assert_eq!(fade.weight(), 0.0);
+        let mut last = 0.0;
+        for _ in 0..9 {
+            assert_eq!(fade.advance(0.1), FadeStep::Running);
+            assert!(fade.weight() > last && fade.weight() < 1.0);
+            last = fade.weight();
+        }
+        assert_eq!(fade.advance(0.2), FadeStep::Finished);
+        assert_eq!((*fade.from(), fade.to(), fade.weight()), ('b', None, 0.0));
+    }
+
+    #[test]
+    fn a_change_during_a_fade_waits_and_the_last_one_counts() {
+        let mut fade = CrossFade::new('a');
+        fade.succeed('b', 1.0);
+        fade.advance(0.0);
+        fade.succeed('c', 1.0);
+        fade.succeed('d', 1.0);
+        assert_eq!(*fade.newest(), 'd');
+        assert_eq!((*fade.from(), fade.to().copied()), ('a', Some('b')));
+        assert_eq!(fade.advance(2.0), FadeStep::Finished);
+        assert_eq!(fade.advance(0.0), FadeStep::Began);
+        assert_eq!((*fade.from(), fade.to().copied()), ('b', Some('d')));
+    }
+
+    #[test]
+    fn no_duration_takes_over_in_the_next_step() {
+        let mut fade = CrossFade::new(1);
+        fade.succeed(2, 0.0);
+        assert_eq!(fade.advance(0.0), FadeStep::Began);
+        assert_eq!(fade.advance(0.0), FadeStep::Finished);
+        assert_eq!(*fade.from(), 2);
+    }
+}
