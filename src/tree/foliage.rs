@@ -53,6 +53,13 @@ pub struct Foliage {
     pub extinction: f32,
     /// The leaves of a spray.
     pub leaf: Leaf,
+    /// How much light comes through a leaf, of what falls on it: 0 to 1.
+    pub translucency: f32,
+    /// Mass of the leaves for each square metre of a spray's size squared, kg/m^2: 0 to 10.
+    pub mass_per_area_kg_m2: f32,
+    /// Drag coefficient of a spray, by its size squared, 0 to 2; far below that of a plate, because sprays fold away and
+    /// shelter one another.
+    pub drag_coefficient: f32,
     /// How they answer the wind.
     pub response: LeafResponse,
 }
@@ -76,6 +83,9 @@ impl Default for Foliage {
             disorder: 0.6,
             extinction: 1.7,
             leaf: Leaf::default(),
+            translucency: 0.35,
+            mass_per_area_kg_m2: 0.2,
+            drag_coefficient: 0.12,
             response: LeafResponse::default(),
         }
     }
@@ -97,6 +107,10 @@ impl Foliage {
         require("skyward", self.skyward, 0.0..=1.0)?;
         require("disorder", self.disorder, 0.0..=3.0)?;
         require("extinction", self.extinction, 0.0..=6.0)?;
+        require("translucency", self.translucency, 0.0..=1.0)?;
+        require("mass_per_area_kg_m2", self.mass_per_area_kg_m2, 0.0..=10.0)?;
+        require("drag_coefficient", self.drag_coefficient, 0.0..=2.0)?;
+        validate_response(&self.response).map_err(|error| error.inside("response"))?;
         self.leaf.validate().map_err(|error| error.inside("leaf"))
     }
 
@@ -105,6 +119,14 @@ impl Foliage {
     pub fn light(&self, depth: f32) -> f32 {
         (-self.extinction * depth).exp()
     }
+}
+
+fn validate_response(response: &LeafResponse) -> Result<(), SpeciesError> {
+    require("turn", response.turn, 0.0..=1.0)?;
+    require("onset_speed_m_s", response.onset_speed_m_s, 0.0..=100.0)?;
+    require("full_speed_m_s", response.full_speed_m_s, 0.0..=100.0)?;
+    require("flutter_angle_rad", response.flutter_angle_rad, 0.0..=1.5)?;
+    require("flutter_frequency_hz", response.flutter_frequency_hz, 0.0..=20.0)
 }
 
 /// Hangs sprays on all beams that carry leaves.

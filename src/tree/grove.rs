@@ -98,7 +98,7 @@ pub fn bake_variants(species: &Species) -> Vec<TreeModel> {
 }
 
 /// Takes over what has been baked.
-pub(super) fn receive_models(
+pub(crate) fn receive_models(
     mut grove: ResMut<Grove>,
     mut models: ResMut<Assets<TreeModel>>,
     mut baked: MessageWriter<SpeciesBaked>,

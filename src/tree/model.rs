@@ -1,11 +1,10 @@
 //! A tree, baked: everything that thousands of trees share, and nothing that changes.
 
 use super::{
-    growth::grow,
     leaf_mesh::{LeafVertices, leaves},
     mechanics::beam_dynamics,
     mesh::{WoodVertices, wood},
-    skeleton::Skeleton,
+    skeleton::{Skeleton, grow},
     species::Species,
 };
 use crate::dynamics::pose::{BeamDynamics, BeamPose, TIP_ANGLE_LIMIT, pose_with_angles};

@@ -6,7 +6,7 @@
 
 use std::ops::RangeInclusive;
 
-use bevy::reflect::Reflect;
+use bevy::{asset::Asset, reflect::Reflect};
 use ron::{Options, extensions::Extensions};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -18,13 +18,15 @@ use super::{
 };
 
 /// One kind of tree.
-#[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
+#[derive(Asset, Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Species {
     /// What the species is called.
     pub name: String,
     /// Number of different individuals that a forest of this species repeats, 1 to 16.
     pub variants: u32,
+    /// Another seed is another set of individuals of the same kind.
+    pub seed: u64,
     /// How the skeleton grows.
     pub growth: Growth,
     /// What its beams are made of.
@@ -38,6 +40,7 @@ impl Default for Species {
         Self {
             name: "oak".into(),
             variants: 4,
+            seed: 0,
             growth: Growth::ReevesBlau(ReevesBlau::default()),
             wood: Wood::default(),
             foliage: Foliage::default(),
@@ -45,7 +48,7 @@ impl Default for Species {
     }
 }
 
-/// Green wood: what decides how fast a beam swings and how soon it rests.
+/// Green wood: what decides how fast a beam swings.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Wood {
@@ -53,17 +56,15 @@ pub struct Wood {
     pub young_modulus_pa: f32,
     /// Density of the living wood, water and all, kg/m^3: 100 to 2000.
     pub density_kg_m3: f32,
-    /// Damping ratio of the whole crown, foliage included, 0.005 to 2.
-    pub damping_ratio: f32,
     /// Its bark.
     pub bark: Bark,
 }
 
 impl Default for Wood {
     /// Green oak: Young's modulus and density after the Wood Handbook (Forest Products Laboratory, 2010, table 5-3:
-    /// white oak, green); damping in the middle of the 0.05 to 0.15 measured on trees in leaf.
+    /// white oak, green).
     fn default() -> Self {
-        Self { young_modulus_pa: 8.6e9, density_kg_m3: 1000.0, damping_ratio: 0.1, bark: Bark::default() }
+        Self { young_modulus_pa: 8.6e9, density_kg_m3: 1000.0, bark: Bark::default() }
     }
 }
 
@@ -71,7 +72,6 @@ impl Wood {
     fn validate(&self) -> Result<(), SpeciesError> {
         require("young_modulus_pa", self.young_modulus_pa, 1.0e8..=1.0e11)?;
         require("density_kg_m3", self.density_kg_m3, 100.0..=2000.0)?;
-        require("damping_ratio", self.damping_ratio, 0.005..=2.0)?;
         self.bark.validate().map_err(|error| error.inside("bark"))
     }
 }
