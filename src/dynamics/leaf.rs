@@ -1,32 +1,106 @@
-//! How leaves answer the wind.
+//! Leaves: massless plates that turn into the wind and flutter.
+//!
+//! The paper (eq. 26 of Setas et al.) moves the spherical angles of a leaf's main axis from rest towards the wind by a
+//! share `k1(u)`, and adds a random part by a share `k2(u)` of a small angle. Angles wrap and the random part, drawn anew
+//! in each frame, flickers. Here the axis goes along the great circle from rest to wind, and the random part is a sum of
+//! sines, smooth in time and seamless over the wind's period:
+//!
+//! ```text
+//! rotation = turn(k1(u) angle(rest, wind)) . flutter
+//! flutter  = rotation by the vector k2(u) D (n_1 e_1 + n_2 e_2),   e_1, e_2 normal to the resting axis
+//! n_i(t)   = mean of sin(2 pi (m_j t / period + phase_ij)), j < 3,  m_j whole
+//! k1(u)    = turn smoothstep(onset, full, u),   k2(u) = smoothstep(onset/2, full/2, u)
+//! ```
 
+use bevy::math::{Quat, Vec3};
 use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
+use std::f32::consts::TAU;
 
-/// How far and how fast the leaves of a species turn and flutter.
+/// Frequencies of the three sines of the flutter, relative to the leaf's: no simple ratio, so that it does not look
+/// periodic.
+const FLUTTER_RATIOS: [f32; 3] = [0.618, 1.0, 1.414];
+/// What the phase of each sine, about the first and the second axis, is multiplied by: leaves of different phase
+/// are to share no pattern.
+const FLUTTER_PHASES: [[f32; 3]; 2] = [[1.0, 7.0, 13.0], [3.0, 11.0, 17.0]];
+/// Below this sine of the angle between rest and wind the axis to turn about is not well defined.
+const PARALLEL: f32 = 1e-4;
+
+/// How a species' leaves answer the wind.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
 pub struct LeafResponse {
-    /// Share of the way a leaf turns its face out of a strong wind, 0 to 1.
+    /// Share of the angle to the wind's direction that a leaf turns through in full wind, 0 to 1.
     pub turn: f32,
-    /// Wind speed at which leaves begin to move, m/s.
+    /// Speed at which leaves begin to turn, in m/s; they begin to flutter at half of it.
     pub onset_speed_m_s: f32,
-    /// Wind speed at which they are fully turned, m/s.
+    /// Speed at which they have turned as far as they do, in m/s; they flutter in full at half of it.
     pub full_speed_m_s: f32,
-    /// Amplitude of the flutter, radians.
+    /// Greatest angle of the flutter about each of its two axes, in radians.
     pub flutter_angle_rad: f32,
-    /// Frequency of the flutter, Hz.
+    /// Typical frequency of the flutter, in Hz.
     pub flutter_frequency_hz: f32,
 }
 
 impl Default for LeafResponse {
+    /// Leaves rustle from 1.6 m/s (Beaufort 2) and are in constant motion from some 4 m/s (Beaufort 3); the angles and
+    /// the frequency are chosen by eye.
     fn default() -> Self {
         Self {
             turn: 0.6,
-            onset_speed_m_s: 1.0,
+            onset_speed_m_s: 3.2,
             full_speed_m_s: 12.0,
-            flutter_angle_rad: 0.25,
-            flutter_frequency_hz: 4.0,
+            flutter_angle_rad: 0.35,
+            flutter_frequency_hz: 3.0,
         }
     }
+}
+
+/// The rotation of a leaf about its anchor.
+///
+/// `rest_axis` is the unit main axis at rest and `wind` the velocity in m/s, both in the same coordinates. The motion
+/// repeats itself after `period_s`, within which `time_s` lies; `phase` (0 to 1) tells leaves apart.
+pub fn turn(response: &LeafResponse, rest_axis: Vec3, wind: Vec3, time_s: f32, period_s: f32, phase: f32) -> Quat {
+    let wind = if wind.is_finite() { wind } else { Vec3::ZERO };
+    let speed = wind.length();
+    let turned = response.turn * smoothstep(response.onset_speed_m_s, response.full_speed_m_s, speed);
+    let fluttering = smoothstep(0.5 * response.onset_speed_m_s, 0.5 * response.full_speed_m_s, speed);
+    let flutter = flutter_vector(response, rest_axis, time_s, period_s, phase) * fluttering;
+    turn_towards(rest_axis, wind, turned) * Quat::from_scaled_axis(flutter)
+}
+
+/// Turns `rest_axis` through the share `turned` of its angle to the wind, along the shortest way.
+fn turn_towards(rest_axis: Vec3, wind: Vec3, turned: f32) -> Quat {
+    let Some(direction) = wind.try_normalize() else { return Quat::IDENTITY };
+    let normal = rest_axis.cross(direction);
+    let sine = normal.length();
+    let axis = if sine > PARALLEL { normal / sine } else { any_normal(rest_axis) };
+    let angle = sine.atan2(rest_axis.dot(direction));
+    Quat::from_axis_angle(axis, turned * angle)
+}
+
+/// The flutter in full wind, as a rotation vector.
+fn flutter_vector(response: &LeafResponse, rest_axis: Vec3, time_s: f32, period_s: f32, phase: f32) -> Vec3 {
+    let periods = if period_s > 0.0 { (time_s / period_s).fract() } else { 0.0 };
+    let first = any_normal(rest_axis);
+    let second = rest_axis.cross(first);
+    let [a, b] = FLUTTER_PHASES.map(|phases| {
+        let sines = FLUTTER_RATIOS.iter().zip(phases).map(|(ratio, factor)| {
+            let cycles = (ratio * response.flutter_frequency_hz * period_s).round();
+            (TAU * (cycles * periods + factor * phase).fract()).sin()
+        });
+        sines.sum::<f32>() / FLUTTER_RATIOS.len() as f32
+    });
+    response.flutter_angle_rad * (a * first + b * second)
+}
+
+/// A unit vector normal to a unit vector.
+fn any_normal(axis: Vec3) -> Vec3 {
+    let helper = if axis.y.abs() < 0.9 { Vec3::Y } else { Vec3::X };
+    axis.cross(helper).normalize_or(Vec3::Z)
+}
+
+/// 0 below `start`, 1 above `end`, and smooth between.
+fn smoothstep(start: f32, end: f32, value: f32) -> f32 {
+    let t = ((value - start) / (end - start).max(f32::EPSILON)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
 }

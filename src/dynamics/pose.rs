@@ -1,0 +1,287 @@
+//! The shape of a tree in the wind: each beam bends along its first mode, keeps its length, and carries its children.
+//!
+//! Beam: base `b`, unit direction `d`, length `L`, all at rest and in the tree's own coordinates; `s` runs from 0 at its
+//! root to 1 at its tip. The load `q`, a vector across `d`, moves the tip by `a = g q` lengths (`g` the beam's gain), and
+//! turns it by `Theta = phi_1'(1) a`. In a storm the straight proportion would roll the beam up; it saturates gracefully:
+//!
+//! ```text
+//! Theta = Theta_free / sqrt(1 + |Theta_free|^2 / limit^2)
+//! ```
+//!
+//! The axis at `s` is turned by `h(s) Theta`, with `h = phi_1' / phi_1'(1)` the slope of the mode (18). Its place
+//! follows by integrating the turned direction along the beam, which keeps every length. With
+//! `H_k(s) = int_0^s h^k` and `T = |Theta|^2`, the Taylor series of cosine and sine give
+//!
+//! ```text
+//! bent(s) = b + L (d X + Theta Y)
+//! X = s - T H_2/2 + T^2 H_4/24 - T^3 H_6/720         = int cos(h |Theta|)
+//! Y = H_1 - T H_3/6 + T^2 H_5/120                    = int sin(h |Theta|) / |Theta|
+//! ```
+//!
+//! A point bound at `s` turns about the axis with it: `p -> R(s) (p - (b + L s d)) + bent(s)`, with `R(s)` the rotation
+//! about `d x Theta` by `h(s) |Theta|`. A child rides on its parent in the same way, bound where it is attached; so
+//! the pose of a vertex is the product of its ancestors' motions, all in rest coordinates.
+//!
+//! The hot path has no trigonometry: quaternions come from polynomials in the half angle.
+
+use super::direction_map::DirectionMap;
+use super::response::FrequencyClasses;
+use bevy::math::{Quat, Vec3, Vec3A, Vec4};
+
+/// The parent of a beam that stands on the ground.
+pub const NO_PARENT: u32 = u32::MAX;
+
+/// `phi_1'(1)`, the slope at the tip of the first mode with a tip of 1: the tip's angle for a deflection of one length.
+pub const SLOPE_TIP: f32 = 1.376_505_4;
+
+/// The angle in radians that a beam's tip approaches in an ever stronger wind (63 degrees).
+pub const TIP_ANGLE_LIMIT: f32 = 1.1;
+
+/// `h(s) = s B_0(s)` and `H_k(s) = s^(k+1) B_k(s)`, k = 1..6, with `B = B[0] + B[1] s + B[2] s^2 + B[3] s^3`: minimax
+/// fits to eq. 18, to 2.1e-4 for h, and to less than 5e-5 of the length for all that `H_k` is multiplied by.
+pub const MODE_SHAPE: [[f32; 4]; 7] = [
+    [2.546_882, -1.678_134_6, -0.275_886_7, 0.406_925_2],
+    [1.274_264_9, -0.563_412_05, -0.062_747_29, 0.078_356_65],
+    [2.195_082_1, -2.357_947, 0.806_842_25, -0.030_695_12],
+    [4.209_066, -7.150_318_3, 4.499_929_4, -1.011_924_7],
+    [8.117_791, -17.585_144, 13.848_035, -3.879_497_8],
+    [15.020_49, -37.190_565, 32.597_094, -9.959_87],
+    [26.275_351, -70.269_42, 65.276_05, -20.841_745],
+];
+
+/// Free angles beyond this, in radians and by component, are cut off before they overflow.
+const FREE_ANGLE_BOUND: f32 = 1e6;
+
+/// What a beam's motion depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeamDynamics {
+    /// Root at rest, in metres, in the tree's coordinates.
+    pub base: Vec3,
+    /// Length in metres.
+    pub length_m: f32,
+    /// Unit direction at rest, from root to tip.
+    pub direction: Vec3,
+    /// Place on the parent's axis where this beam is attached, 0 (root) to 1 (tip).
+    pub attach: f32,
+    /// Index of the parent, which must be lower than the beam's own, or [`NO_PARENT`].
+    pub parent: u32,
+    /// Tip deflection by length and load, in s^2/m^2.
+    pub gain: f32,
+    /// Natural frequency as a [coordinate](FrequencyClasses::coordinate) of the classes, not rounded.
+    pub class: f32,
+}
+
+/// How a beam is bent, and what its ancestors do to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeamPose {
+    /// Angle of the tip in radians, as a vector in the sense of the deflection, in the tree's rest coordinates.
+    pub tip_angle: Vec3A,
+    /// Rotation that the ancestors give to the beam's rest frame.
+    pub rotation: Quat,
+    /// Translation that the ancestors give to the beam's rest frame, in metres, after the rotation.
+    pub translation: Vec3A,
+}
+
+impl Default for BeamPose {
+    fn default() -> Self {
+        Self::REST
+    }
+}
+
+impl BeamPose {
+    /// The pose in a calm.
+    pub const REST: Self = Self { tip_angle: Vec3A::ZERO, rotation: Quat::IDENTITY, translation: Vec3A::ZERO };
+
+    /// Where `rest_point`, bound at `s` (0 to 1) of this pose's beam, is now, in metres in the tree's coordinates, and
+    /// the rotation there.
+    pub fn carry(&self, beam: &BeamDynamics, s: f32, rest_point: Vec3) -> (Vec3, Quat) {
+        let point = AxisPoint::new(beam, s);
+        let bend = point.bend(self.tip_angle);
+        let arm = Vec3A::from(rest_point) - point.rest;
+        // Adding what moved, rather than subtracting and adding the axis, keeps the rest pose exact.
+        let bent = Vec3A::from(rest_point) + (bend.rotation * arm - arm) + bend.displacement;
+        (Vec3::from(self.rotation * bent + self.translation), self.rotation * bend.rotation)
+    }
+}
+
+/// A point of a beam's axis with all that does not change from frame to frame.
+#[derive(Clone, Copy, Debug)]
+struct AxisPoint {
+    /// `b + L s d`.
+    rest: Vec3A,
+    direction: Vec3A,
+    /// `h / 2`.
+    half_turn: f32,
+    /// Coefficients of T, T^2, T^3 in `L (X - s)`.
+    along: [f32; 3],
+    /// Coefficients of 1, T, T^2 in `L Y`.
+    across: [f32; 3],
+}
+
+/// What bending does at a point of the axis.
+struct Bend {
+    rotation: Quat,
+    displacement: Vec3A,
+}
+
+impl AxisPoint {
+    fn new(beam: &BeamDynamics, s: f32) -> Self {
+        let s = s.clamp(0.0, 1.0);
+        let [h, h1, h2, h3, h4, h5, h6] = mode_shape(s);
+        let length = beam.length_m;
+        Self {
+            rest: Vec3A::from(beam.base + length * s * beam.direction),
+            direction: Vec3A::from(beam.direction),
+            half_turn: 0.5 * h,
+            along: [-length * h2 / 2.0, length * h4 / 24.0, -length * h6 / 720.0],
+            across: [length * h1, -length * h3 / 6.0, length * h5 / 120.0],
+        }
+    }
+
+    #[inline]
+    fn bend(&self, tip_angle: Vec3A) -> Bend {
+        let t = tip_angle.length_squared();
+        let along = t * (self.along[0] + t * (self.along[1] + t * self.along[2]));
+        let across = self.across[0] + t * (self.across[1] + t * self.across[2]);
+        Bend {
+            rotation: quat_from_half_vector(self.direction.cross(tip_angle) * self.half_turn),
+            displacement: self.direction * along + tip_angle * across,
+        }
+    }
+}
+
+/// `h(s)` and `H_1(s)` to `H_6(s)`, see [`MODE_SHAPE`].
+pub fn mode_shape(s: f32) -> [f32; 7] {
+    let mut power = 1.0;
+    MODE_SHAPE.map(|[a, b, c, d]| {
+        power *= s;
+        power * (a + s * (b + s * (c + s * d)))
+    })
+}
+
+/// The quaternion of a rotation by twice the vector `half`, for up to some 1.2 rad in all.
+///
+/// The series are of the 4th and 6th degree; what they leave of the quaternion's length, below 1e-5, one step of
+/// Newton's method for the inverse root removes.
+#[inline]
+fn quat_from_half_vector(half: Vec3A) -> Quat {
+    let x2 = half.length_squared();
+    let sine = 1.0 + x2 * (-1.0 / 6.0 + x2 * (1.0 / 120.0));
+    let cosine = 1.0 + x2 * (-1.0 / 2.0 + x2 * (1.0 / 24.0 + x2 * (-1.0 / 720.0)));
+    let inverse_norm = 1.5 - 0.5 * (cosine * cosine + sine * sine * x2);
+    let axis = half * (sine * inverse_norm);
+    Quat::from_xyzw(axis.x, axis.y, axis.z, cosine * inverse_norm)
+}
+
+/// `Theta` from `Theta_free`: the same direction, but never beyond [`TIP_ANGLE_LIMIT`].
+#[inline]
+fn saturate(free: Vec3A) -> Vec3A {
+    let bounded = free.clamp(Vec3A::splat(-FREE_ANGLE_BOUND), Vec3A::splat(FREE_ANGLE_BOUND));
+    bounded / (1.0 + bounded.length_squared() * (1.0 / (TIP_ANGLE_LIMIT * TIP_ANGLE_LIMIT))).sqrt()
+}
+
+/// One tree's beams, made ready for one wind: what does not change from frame to frame.
+#[derive(Clone, Debug, Default)]
+pub struct TreePoser {
+    beams: Vec<ReadyBeam>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct ReadyBeam {
+    /// Free tip angle in the mean wind, and for a unit of each signal's response, in rad.
+    mean: Vec3A,
+    moving: [Vec3A; 4],
+    /// Where on the parent this beam is attached.
+    attach: AxisPoint,
+    class: u32,
+    parent: u32,
+}
+
+impl TreePoser {
+    /// See [`prepare`](Self::prepare).
+    pub fn new(
+        beams: &[BeamDynamics],
+        map: &DirectionMap,
+        classes: &FrequencyClasses,
+        to_wind: Quat,
+        scale: f32,
+    ) -> Self {
+        let mut poser = Self::default();
+        poser.prepare(beams, map, classes, to_wind, scale);
+        poser
+    }
+
+    /// Makes the beams of a tree ready, in place of what was there. To be repeated when the wind's basis or the tree's
+    /// orientation changes.
+    ///
+    /// `to_wind` rotates the tree's coordinates into the wind's. `scale` is the size of the instance: it makes a
+    /// tree sway more slowly, and leaves the angles as they are (stiffness grows with its fourth power, as do the load's
+    /// moments). A beam with a parent that does not precede it stands on the ground.
+    pub fn prepare(
+        &mut self,
+        beams: &[BeamDynamics],
+        map: &DirectionMap,
+        classes: &FrequencyClasses,
+        to_wind: Quat,
+        scale: f32,
+    ) {
+        let shift = classes.shift(scale);
+        self.beams.clear();
+        self.beams.extend(beams.iter().enumerate().map(|(index, beam)| {
+            let parent = beams[..index].get(beam.parent as usize);
+            let coefficients = map.coefficients(to_wind * beam.direction);
+            let free_angle = |load: Vec3| {
+                let angle = SLOPE_TIP * beam.gain * (to_wind.inverse() * load);
+                Vec3A::from(if angle.is_finite() { angle } else { Vec3::ZERO })
+            };
+            ReadyBeam {
+                mean: free_angle(coefficients.mean),
+                moving: coefficients.moving.map(free_angle),
+                attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
+                class: classes.nearest(beam.class + shift) as u32,
+                parent: if parent.is_some() { beam.parent } else { NO_PARENT },
+            }
+        }));
+    }
+
+    /// Number of beams.
+    pub fn len(&self) -> usize {
+        self.beams.len()
+    }
+
+    /// Whether there is no beam.
+    pub fn is_empty(&self) -> bool {
+        self.beams.is_empty()
+    }
+
+    /// Poses all beams, for the responses of all classes at the tree's place and time
+    /// ([`ResponseTable::responses`](super::ResponseTable::responses)). A class without a response is at rest in the mean
+    /// wind. Beams beyond the length of `out` are left out.
+    pub fn pose(&self, responses: &[Vec4], out: &mut [BeamPose]) {
+        for (index, beam) in self.beams.iter().enumerate().take(out.len()) {
+            let response = responses.get(beam.class as usize).copied().unwrap_or(Vec4::ZERO);
+            let (rotation, translation) = match out.get(beam.parent as usize) {
+                Some(parent) => beam.ride(parent),
+                None => (Quat::IDENTITY, Vec3A::ZERO),
+            };
+            out[index] = BeamPose { tip_angle: beam.tip_angle(response), rotation, translation };
+        }
+    }
+}
+
+impl ReadyBeam {
+    #[inline]
+    fn tip_angle(&self, response: Vec4) -> Vec3A {
+        let [a, b, c, d] = self.moving;
+        saturate(self.mean + a * response.x + b * response.y + c * response.z + d * response.w)
+    }
+
+    /// The rigid motion of this beam's rest frame: its parent's own, after the parent's bend where this one is attached.
+    #[inline]
+    fn ride(&self, parent: &BeamPose) -> (Quat, Vec3A) {
+        let bend = self.attach.bend(parent.tip_angle);
+        let rest = self.attach.rest;
+        let moved = parent.rotation * (rest - bend.rotation * rest + bend.displacement);
+        (parent.rotation * bend.rotation, parent.translation + moved)
+    }
+}
