@@ -244,6 +244,21 @@ impl TreePoser {
         }));
     }
 
+    /// Beams that are bent once and for all, by a free tip angle in rad across each beam, whatever the wind.
+    pub fn bent(beams: &[BeamDynamics], free_angle: impl Fn(&BeamDynamics) -> Vec3) -> Self {
+        let ready = beams.iter().enumerate().map(|(index, beam)| {
+            let parent = beams[..index].get(beam.parent as usize);
+            ReadyBeam {
+                mean: Vec3A::from(free_angle(beam)),
+                moving: [Vec3A::ZERO; 4],
+                attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
+                class: u32::MAX,
+                parent: if parent.is_some() { beam.parent } else { NO_PARENT },
+            }
+        });
+        Self { beams: ready.collect() }
+    }
+
     /// Number of beams.
     pub fn len(&self) -> usize {
         self.beams.len()
@@ -254,26 +269,51 @@ impl TreePoser {
         self.beams.is_empty()
     }
 
+    /// Adds `weight` times each beam's free tip angle, for [`pose_free`](Self::pose_free): while one wind fades into another,
+    /// their loads add up before the beams saturate.
+    pub fn add_free_angles(&self, responses: &[Vec4], weight: f32, free: &mut [Vec3A]) {
+        for (beam, free) in self.beams.iter().zip(free) {
+            *free += weight * beam.free_angle(response_of(beam, responses));
+        }
+    }
+
+    /// Poses all beams for given free tip angles, one a beam.
+    pub fn pose_free(&self, free: &[Vec3A], out: &mut [BeamPose]) {
+        for (index, (beam, free)) in self.beams.iter().zip(free).enumerate().take(out.len()) {
+            out[index] = beam.pose(saturate(*free), out);
+        }
+    }
+
     /// Poses all beams, for the responses of all classes at the tree's place and time
     /// ([`ResponseTable::responses`](super::ResponseTable::responses)). A class without a response is at rest in the mean
     /// wind. Beams beyond the length of `out` are left out.
     pub fn pose(&self, responses: &[Vec4], out: &mut [BeamPose]) {
         for (index, beam) in self.beams.iter().enumerate().take(out.len()) {
-            let response = responses.get(beam.class as usize).copied().unwrap_or(Vec4::ZERO);
-            let (rotation, translation) = match out.get(beam.parent as usize) {
-                Some(parent) => beam.ride(parent),
-                None => (Quat::IDENTITY, Vec3A::ZERO),
-            };
-            out[index] = BeamPose { tip_angle: beam.tip_angle(response), rotation, translation };
+            out[index] = beam.pose(saturate(beam.free_angle(response_of(beam, responses))), out);
         }
     }
 }
 
+#[inline]
+fn response_of(beam: &ReadyBeam, responses: &[Vec4]) -> Vec4 {
+    responses.get(beam.class as usize).copied().unwrap_or(Vec4::ZERO)
+}
+
 impl ReadyBeam {
     #[inline]
-    fn tip_angle(&self, response: Vec4) -> Vec3A {
+    fn free_angle(&self, response: Vec4) -> Vec3A {
         let [a, b, c, d] = self.moving;
-        saturate(self.mean + a * response.x + b * response.y + c * response.z + d * response.w)
+        self.mean + a * response.x + b * response.y + c * response.z + d * response.w
+    }
+
+    /// The pose of this beam, given those of all before it.
+    #[inline]
+    fn pose(&self, tip_angle: Vec3A, before: &[BeamPose]) -> BeamPose {
+        let (rotation, translation) = match before.get(self.parent as usize) {
+            Some(parent) => self.ride(parent),
+            None => (Quat::IDENTITY, Vec3A::ZERO),
+        };
+        BeamPose { tip_angle, rotation, translation }
     }
 
     /// The rigid motion of this beam's rest frame: its parent's own, after the parent's bend where this one is attached.

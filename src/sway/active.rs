@@ -54,7 +54,7 @@ impl ActiveSway {
         self.building.is_none() && self.responses.as_ref().is_some_and(|fade| fade.to().is_none())
     }
 
-    /// Grows with every change of what the slots hold.
+    /// Grows whenever [`now`](Self::now) yields other winds than before.
     pub fn generation(&self) -> u64 {
         self.generation
     }
@@ -111,7 +111,10 @@ pub(super) fn fade_tables(wind: Res<Wind>, time: Res<Time>, mut sway: ResMut<Act
     match fade.advance(time.delta_secs()) {
         FadeStep::Began => sway.generation += 1,
         // The slot that has faded in keeps its tables: now it is the one that the next fade starts from.
-        FadeStep::Finished => sway.swapped = !sway.swapped,
+        FadeStep::Finished => {
+            sway.swapped = !sway.swapped;
+            sway.generation += 1;
+        }
         FadeStep::Running | FadeStep::Rest => {}
     }
     let weight = fade.weight();

@@ -1,18 +1,18 @@
 //! Trees whose beams and leaves are entities that follow the wind, on the processor.
 
 use super::{
-    active::{ActiveSway, FLUTTER_PERIOD_S, leaf_clock_s},
+    active::{ActiveSway, FLUTTER_PERIOD_S, WeightedResponse, leaf_clock_s},
     response::WindResponse,
 };
 use crate::{
     dynamics::{
         leaf,
-        pose::{BeamPose, PoseCache, TreePlacement, pose},
+        pose::{BeamPose, TreePoser},
     },
     tree::{Articulated, Beam, BeamOf, Grove, Grown, Leaf, LeafOf, Tree, TreeBeams, TreeLeaves, TreeModel},
     wind::WindClock,
 };
-use bevy::prelude::*;
+use bevy::{math::Vec3A, prelude::*};
 
 /// The pose of an articulated tree this frame, beam by beam, in the order of its skeleton.
 #[derive(Component, Default)]
@@ -20,9 +20,12 @@ pub struct TreePose {
     beams: Vec<BeamPose>,
     /// Wind at the tree in tree-local axes, m/s.
     wind: Vec3,
-    caches: Vec<PoseCache>,
-    /// What the caches were made for.
+    /// One for each wind that blows: two while one fades into another.
+    posers: [TreePoser; 2],
+    /// What the posers were made for.
     made_for: Option<(u64, AssetId<TreeModel>, GlobalTransform)>,
+    free_angles: Vec<Vec3A>,
+    responses: Vec<Vec4>,
 }
 
 impl TreePose {
@@ -74,7 +77,7 @@ pub(super) fn pose_trees(
         let Some(model) = models.get(&grown.model) else { return };
         let stands = if is_child { *global } else { GlobalTransform::from(*transform) };
         tree.refresh(&sway, grown.model.id(), model, stands);
-        tree.follow(&sway, clock.time_s, model, stands);
+        tree.follow(&sway, clock.time_s, stands);
     });
 }
 
@@ -82,36 +85,38 @@ impl TreePose {
     /// Looks the load coefficients up again when the wind, the model or the tree's place is another.
     fn refresh(&mut self, sway: &ActiveSway, id: AssetId<TreeModel>, model: &TreeModel, stands: GlobalTransform) {
         let key = (sway.generation(), id, stands);
-        if self.made_for == Some(key) && self.caches.len() == sway.now().count() {
+        if self.made_for == Some(key) {
             return;
         }
-        self.beams.resize(model.beams.len(), BeamPose::default());
-        self.caches.clear();
-        for wind in sway.now() {
-            let placement = placement(wind.response, stands);
-            self.caches.push(PoseCache::new(&model.beams, &wind.response.basis, &wind.response.table.classes, placement));
+        self.beams.resize(model.beams.len(), BeamPose::REST);
+        for (poser, WeightedResponse { response, .. }) in self.posers.iter_mut().zip(sway.now()) {
+            let to_wind = wind_from_world(response) * stands.rotation();
+            poser.prepare(&model.beams, response.basis.map(), &response.table.classes, to_wind, stands.scale().y);
         }
         self.made_for = Some(key);
     }
 
-    fn follow(&mut self, sway: &ActiveSway, time_s: f64, model: &TreeModel, stands: GlobalTransform) {
+    fn follow(&mut self, sway: &ActiveSway, time_s: f64, stands: GlobalTransform) {
         let local_from_world = stands.rotation().inverse();
         self.wind = Vec3::ZERO;
-        for (cache, wind) in self.caches.iter_mut().zip(sway.now()) {
-            let (column, tau_s) = wind.response.place(stands.translation(), time_s);
-            cache.listen(&wind.response.table, column, tau_s, wind.weight);
-            let velocity = wind.response.table.velocity(column, tau_s).truncate();
-            self.wind += wind.weight * (local_from_world * wind.response.field.frame().to_world(velocity));
+        self.free_angles.clear();
+        self.free_angles.resize(self.beams.len(), Vec3A::ZERO);
+        for (poser, WeightedResponse { response, weight }) in self.posers.iter().zip(sway.now()) {
+            let (column, tau_s) = response.place(stands.translation(), time_s);
+            self.responses.resize(response.table.classes.count, Vec4::ZERO);
+            response.table.responses(column, tau_s, &mut self.responses);
+            poser.add_free_angles(&self.responses, weight, &mut self.free_angles);
+            let velocity = response.field.frame().to_world(response.table.velocity(column, tau_s));
+            self.wind += weight * (local_from_world * velocity);
         }
-        pose(&model.beams, &self.caches, &mut self.beams);
+        self.posers[0].pose_free(&self.free_angles, &mut self.beams);
     }
 }
 
-fn placement(response: &WindResponse, stands: GlobalTransform) -> TreePlacement {
+/// The rotation from world axes to wind coordinates.
+fn wind_from_world(response: &WindResponse) -> Quat {
     let frame = response.field.frame();
-    let wind_from_world = Mat3::from_cols(frame.along, Vec3::Y, frame.across).transpose();
-    let wind_from_local = Quat::from_mat3(&wind_from_world) * stands.rotation();
-    TreePlacement { to_wind: wind_from_local, scale: stands.scale().y }
+    Quat::from_mat3(&Mat3::from_cols(frame.along, Vec3::Y, frame.across)).inverse()
 }
 
 /// Moves beam entities to where their cross-sections are.

@@ -7,7 +7,7 @@ use super::{
     looks::{Outfit, SpeciesLooks, VariantLook},
     material::TAG_BEAM_BITS,
 };
-use crate::tree::{Grown, Species, SpeciesBaked, Tree};
+use crate::tree::{Grown, Species, Tree};
 use bevy::{
     camera::visibility::{NoAutoAabb, NoCpuCulling},
     mesh::MeshTag,

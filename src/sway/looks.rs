@@ -7,8 +7,12 @@ use super::{
     upload::WindBuffers,
 };
 use crate::tree::{
-    BakedSpecies, BarkTextures, Grove, LeafVertices, Species, SpeciesBaked, TextureData, TreeModel, WoodVertices,
-    bark_textures, leaf_texture,
+    BakedSpecies, Grove, Species, SpeciesBaked, TreeModel,
+    bark::{BarkTextures, bark_textures},
+    leaf_mesh::LeafVertices,
+    leaf_texture::leaf_texture,
+    mesh::WoodVertices,
+    texture::TextureData,
 };
 use bevy::{
     asset::RenderAssetUsages,

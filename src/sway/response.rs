@@ -61,7 +61,7 @@ impl WindResponse {
         let columns: Vec<Vec<Vec3>> = (0..resolution.columns)
             .map(|column| {
                 let mut series = Vec::new();
-                field.column_velocities(column, settings.reference_height_m, &mut series);
+                field.column_velocities(column as usize, settings.reference_height_m, &mut series);
                 series
             })
             .collect();

@@ -61,9 +61,8 @@ pub(super) fn upload_tables(
     // frame, since nothing says that the buffer is prepared before the material.
     if *stale_materials > 0 {
         *stale_materials -= 1;
-        for (_, mut material) in materials.iter_mut() {
-            material.extension.touch();
-        }
+        // Iterating mutably marks every material as changed.
+        materials.iter_mut().for_each(drop);
     }
 }
 

@@ -59,7 +59,8 @@ pub fn beam_dynamics(species: &Species, skeleton: &Skeleton) -> Vec<BeamDynamics
 
 /// Natural frequency of a row's beam with all that it bears, Hz.
 pub fn natural_frequency_hz(row: &BeamDynamics) -> f32 {
-    FrequencyClasses::default().frequency_hz(row.class)
+    let classes = FrequencyClasses::default();
+    classes.lowest_hz * classes.ratio.powf(row.class)
 }
 
 /// Generalised mass, stiffness and load of one beam.

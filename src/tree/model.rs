@@ -7,7 +7,7 @@ use super::{
     skeleton::{Skeleton, grow},
     species::Species,
 };
-use crate::dynamics::pose::{BeamDynamics, BeamPose, TIP_ANGLE_LIMIT, pose_with_angles};
+use crate::dynamics::pose::{BeamDynamics, BeamPose, TreePoser};
 use bevy::{asset::Asset, math::Vec3, reflect::TypePath};
 
 /// One variant of a species: skeleton, beams, vertices, bounds. Immutable once baked.
@@ -53,22 +53,21 @@ impl TreeModel {
 
 /// Directions into which the whole tree is bent to its limit to find its bounds.
 const BOUND_DIRECTIONS: usize = 16;
+/// A free tip angle at which beams have saturated, rad.
+const HURRICANE_RAD: f32 = 1e3;
 /// Share by which the box is widened for poses between those directions.
 const BOUND_MARGIN: f32 = 0.05;
 
 /// Bends every beam to its limit into each of a ring of directions, and takes the box around all vertices.
 fn sway_bounds(beams: &[BeamDynamics], wood: &WoodVertices, leaves: &LeafVertices) -> SwayBounds {
     let mut bounds = SwayBounds { min: Vec3::ZERO, max: Vec3::ZERO };
-    let mut angles = vec![Vec3::ZERO; beams.len()];
     let mut poses = vec![BeamPose::default(); beams.len()];
     for step in 0..=BOUND_DIRECTIONS {
         let azimuth = step as f32 / BOUND_DIRECTIONS as f32 * std::f32::consts::TAU;
         // The last step is the tree at rest.
         let lean = if step == BOUND_DIRECTIONS { Vec3::ZERO } else { Vec3::new(azimuth.cos(), 0.0, azimuth.sin()) };
-        for (angle, beam) in angles.iter_mut().zip(beams) {
-            *angle = lean.reject_from_normalized(beam.direction).normalize_or_zero() * TIP_ANGLE_LIMIT;
-        }
-        pose_with_angles(beams, &angles, &mut poses);
+        let to_the_limit = |beam: &BeamDynamics| lean.reject_from_normalized(beam.direction).normalize_or_zero() * HURRICANE_RAD;
+        TreePoser::bent(beams, to_the_limit).pose(&[], &mut poses);
         let mut enclose = |sway: &[f32; 4], position: &[f32; 3], reach_m: f32| {
             let beam = sway[0] as usize;
             let (carried, _) = poses[beam].carry(&beams[beam], sway[1], Vec3::from_array(*position));

@@ -1,0 +1,152 @@
+//! Pictures instead of a window.
+
+use crate::{
+    options::Options,
+    scene::{Setting, camera_transform, haze},
+};
+use bevy::{
+    camera::RenderTarget,
+    prelude::*,
+    render::{
+        render_resource::{PollType, TextureFormat},
+        renderer::RenderDevice,
+        view::screenshot::{Screenshot, ScreenshotCaptured},
+    },
+    time::TimeUpdateStrategy,
+};
+use bevy_windwood::{prelude::*, tree::Grove};
+use image::RgbaImage;
+use std::{
+    path::Path,
+    process::ExitCode,
+    sync::{Arc, Mutex},
+    time::{Duration, Instant},
+};
+
+/// Longest that wind and trees may take to get ready.
+const PATIENCE: Duration = Duration::from_secs(600);
+
+/// Renders the pictures that the options ask for.
+pub fn render(mut app: App, options: &Options) -> ExitCode {
+    match run(&mut app, options) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(app: &mut App, options: &Options) -> Result<(), String> {
+    std::fs::create_dir_all(&options.out).map_err(|error| format!("{}: {error}", options.out.display()))?;
+    let begun = Instant::now();
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
+    app.finish();
+    app.cleanup();
+    if app.world().get_resource::<RenderDevice>().is_none() {
+        return Err("there is no graphics device; on Linux, Mesa's software Vulkan is one (mesa-vulkan-drivers)".into());
+    }
+    let target = spawn_camera(app, options);
+    while !is_ready(app, options) {
+        app.update();
+        if begun.elapsed() > PATIENCE {
+            return Err("the wind or a species did not get ready; see the warnings above".into());
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    // Two frames more: meshes and tables that were added last are prepared, and there is a frame before.
+    step(app, Duration::ZERO);
+    step(app, Duration::ZERO);
+    println!("ready after {:.1} s", begun.elapsed().as_secs_f32());
+
+    app.world_mut().resource_mut::<WindClock>().time_s = options.start;
+    let mut pictures = Vec::new();
+    for frame in 0..options.frames {
+        let picture = capture(app, &target)?;
+        let path = options.out.join(format!("forest_{frame:03}.png"));
+        save(&picture, &path)?;
+        println!("{} after {:.1} s", path.display(), begun.elapsed().as_secs_f32());
+        if options.strip {
+            pictures.push(picture);
+        }
+        step(app, Duration::from_secs_f64(options.interval));
+    }
+    if options.strip {
+        save(&strip(&pictures), &options.out.join("strip.png"))?;
+    }
+    Ok(())
+}
+
+fn spawn_camera(app: &mut App, options: &Options) -> Handle<Image> {
+    let world = app.world_mut();
+    let (width, height) = options.size;
+    let image = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
+    let target = world.resource_mut::<Assets<Image>>().add(image);
+    let transform = camera_transform(world.resource::<Setting>());
+    world.spawn((
+        Camera3d::default(),
+        Projection::Perspective(PerspectiveProjection { far: 60_000.0, ..default() }),
+        RenderTarget::Image(target.clone().into()),
+        transform,
+        haze(),
+    ));
+    target
+}
+
+/// Whether the wind blows and every tree is drawn.
+fn is_ready(app: &mut App, options: &Options) -> bool {
+    let world = app.world_mut();
+    let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
+    let trees = world.query_filtered::<(), With<Tree>>().iter(world).count();
+    let grown = trees > 0 || options.trees == 0;
+    world.resource::<ActiveSway>().is_ready() && !world.resource::<Grove>().is_baking() && grown && bare == 0
+}
+
+/// One frame, rendered to the end.
+fn step(app: &mut App, duration: Duration) {
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(duration));
+    app.update();
+    let poll = PollType::Wait { submission_index: None, timeout: None };
+    if let Err(error) = app.world().resource::<RenderDevice>().wgpu_device().poll(poll) {
+        warn!("waiting for the frame: {error}");
+    }
+}
+
+fn capture(app: &mut App, target: &Handle<Image>) -> Result<RgbaImage, String> {
+    let slot: Arc<Mutex<Option<Image>>> = Arc::default();
+    let filled = slot.clone();
+    app.world_mut().spawn(Screenshot::image(target.clone())).observe(move |captured: On<ScreenshotCaptured>| {
+        if let Ok(mut slot) = filled.lock() {
+            *slot = Some(captured.image.clone());
+        }
+    });
+    for _ in 0..16 {
+        step(app, Duration::ZERO);
+        let taken = slot.lock().ok().and_then(|mut slot| slot.take());
+        if let Some(image) = taken {
+            let dynamic = image.try_into_dynamic().map_err(|error| error.to_string())?;
+            return Ok(dynamic.to_rgba8());
+        }
+    }
+    Err("the picture did not come back from the graphics device".into())
+}
+
+fn save(picture: &RgbaImage, path: &Path) -> Result<(), String> {
+    picture.save(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// The pictures side by side, and at the end how much each place changed from the first to the last.
+fn strip(pictures: &[RgbaImage]) -> RgbaImage {
+    let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return RgbaImage::new(1, 1) };
+    let change = RgbaImage::from_fn(first.width(), first.height(), |x, y| {
+        let (a, b) = (first.get_pixel(x, y).0, last.get_pixel(x, y).0);
+        let difference = |channel: usize| a[channel].abs_diff(b[channel]).saturating_mul(3);
+        image::Rgba([difference(0), difference(1), difference(2), 255])
+    });
+    let panels = pictures.len() as u32 + 1;
+    let mut strip = RgbaImage::new(first.width() * panels, first.height());
+    for (panel, picture) in (0u32..).zip(pictures.iter().chain([&change])) {
+        image::imageops::replace(&mut strip, picture, i64::from(panel * first.width()), 0);
+    }
+    strip
+}

@@ -1,0 +1,87 @@
+//! What the forest may be told on its command line.
+
+use clap::{Parser, ValueEnum};
+use std::path::PathBuf;
+
+/// A forest in the wind.
+#[derive(Parser, Clone, Debug)]
+#[command(about = "A hillside forest in a turbulent wind. Flies in a window, or renders pictures where there is none.")]
+pub struct Options {
+    /// Number of trees.
+    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u32).range(0..=200_000))]
+    pub trees: u32,
+    /// Another seed is another forest in another wind.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Mean wind speed at 10 m above ground, m/s.
+    #[arg(long, default_value_t = 10.0, value_parser = wind_speed)]
+    pub wind: f32,
+    /// Where to look from.
+    #[arg(long, value_enum, default_value_t = View::Hillside)]
+    pub view: View,
+    /// Renders pictures instead of opening a window; the default where there is no display.
+    #[arg(long)]
+    pub headless: bool,
+    /// Number of pictures.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub frames: u32,
+    /// Time between two pictures, s.
+    #[arg(long, default_value_t = 0.5, value_parser = seconds)]
+    pub interval: f64,
+    /// Time of the first picture, s.
+    #[arg(long, default_value_t = 40.0, value_parser = seconds)]
+    pub start: f64,
+    /// Size of a picture or of the window.
+    #[arg(long, default_value = "960x540", value_parser = size)]
+    pub size: (u32, u32),
+    /// Folder for the pictures.
+    #[arg(long, default_value = "out")]
+    pub out: PathBuf,
+    /// Also writes the pictures side by side, and what moved between the first and the last.
+    #[arg(long)]
+    pub strip: bool,
+    /// A 16-bit grey PNG of elevations in metres, first row northernmost.
+    #[arg(long)]
+    pub ground: Option<PathBuf>,
+    /// Distance between the elevations, m.
+    #[arg(long, default_value_t = 233.0, value_parser = cell_size)]
+    pub cell_size: f32,
+}
+
+/// A place to look from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum View {
+    /// Over the forest, up the slope.
+    Hillside,
+    /// From the meadow, at eye height, at the trees of the edge.
+    Edge,
+    /// From above.
+    Aerial,
+}
+
+fn wind_speed(text: &str) -> Result<f32, String> {
+    in_range(text, 0.0, 75.0, "m/s")
+}
+
+fn cell_size(text: &str) -> Result<f32, String> {
+    in_range(text, 0.01, 10_000.0, "m")
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    in_range(text, 0.0, 1e6, "s").map(f64::from)
+}
+
+fn in_range(text: &str, low: f32, high: f32, unit: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if (low..=high).contains(&value) => Ok(value),
+        _ => Err(format!("expected a number from {low} to {high} {unit}")),
+    }
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let parts = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
+    match parts {
+        Some((width, height)) if (1..=8192).contains(&width) && (1..=8192).contains(&height) => Ok((width, height)),
+        _ => Err("expected WIDTHxHEIGHT, each from 1 to 8192".to_owned()),
+    }
+}

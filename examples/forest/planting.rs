@@ -1,0 +1,101 @@
+//! Where the trees stand: a wood with a meadow before it, firs uphill and oaks down, in drifts.
+
+use crate::ground::Ground;
+use bevy::prelude::*;
+use bevy_windwood::prelude::*;
+use noise::{NoiseFn, OpenSimplex};
+use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
+
+/// Ground that a tree has to itself, m^2.
+const AREA_PER_TREE_M2: f32 = 62.0;
+/// Least distance between stems, m.
+const LEAST_DISTANCE_M: f32 = 4.2;
+/// Length from drift to drift of a species, m.
+const DRIFT_M: f32 = 70.0;
+
+/// One place for a tree.
+pub struct Place {
+    pub transform: Transform,
+    pub is_fir: bool,
+}
+
+/// Half the side of the square that the wood covers, m.
+pub fn half_side_m(trees: u32) -> f32 {
+    0.5 * (trees.max(1) as f32 * AREA_PER_TREE_M2).sqrt()
+}
+
+/// Chooses places for `trees` trees; the same seed gives the same wood.
+pub fn places(ground: &Ground, trees: u32, seed: u64) -> Vec<Place> {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let drifts = OpenSimplex::new(seed as u32);
+    let uphill = ground.uphill();
+    let half = half_side_m(trees);
+    let mut grid = Spacing::new(half);
+    let mut places = Vec::with_capacity(trees as usize);
+    // Darts that fall too near to another stem are thrown again, but not for ever.
+    let mut darts = 40 * trees;
+    while places.len() < trees as usize && darts > 0 {
+        darts -= 1;
+        let at = Vec2::new(random.random_range(-half..half), random.random_range(-half..half));
+        let crowded = darts > 4 * trees && !grid.is_free(at);
+        if crowded {
+            continue;
+        }
+        grid.take(at);
+        let drift = drifts.get([at.x, at.y].map(|c| f64::from(c / DRIFT_M))) as f32;
+        let is_fir = at.dot(*uphill) / half + 1.6 * drift + random.random_range(-0.25..0.25) > 0.05;
+        let scale = if is_fir { random.random_range(0.6..1.15) } else { random.random_range(0.7..1.1) };
+        places.push(Place {
+            transform: Transform::from_xyz(at.x, ground.height_m(at.x, at.y) - 0.15, at.y)
+                .with_rotation(Quat::from_rotation_y(random.random_range(0.0..std::f32::consts::TAU)))
+                .with_scale(Vec3::splat(scale)),
+            is_fir,
+        });
+    }
+    places
+}
+
+/// Plants the trees.
+pub fn plant(commands: &mut Commands, assets: &AssetServer, places: &[Place]) {
+    let (oak, fir) = (assets.load("species/oak.species.ron"), assets.load("species/fir.species.ron"));
+    for place in places {
+        let species = if place.is_fir { fir.clone() } else { oak.clone() };
+        commands.spawn((Tree::new(species), place.transform));
+    }
+}
+
+/// Cells that hold at most one stem, so that neighbours are found at once.
+struct Spacing {
+    cells: Vec<Option<Vec2>>,
+    side: usize,
+    half: f32,
+}
+
+impl Spacing {
+    fn new(half: f32) -> Self {
+        let side = (2.0 * half / Self::CELL_M).ceil() as usize + 1;
+        Self { cells: vec![None; side * side], side, half }
+    }
+
+    /// A cell's diagonal is the least distance: two stems never share one.
+    const CELL_M: f32 = LEAST_DISTANCE_M * std::f32::consts::FRAC_1_SQRT_2;
+
+    fn cell(&self, at: Vec2) -> (usize, usize) {
+        let index = |c: f32| (((c + self.half) / Self::CELL_M) as usize).min(self.side - 1);
+        (index(at.x), index(at.y))
+    }
+
+    fn is_free(&self, at: Vec2) -> bool {
+        let (column, row) = self.cell(at);
+        let around = |index: usize| index.saturating_sub(2)..(index + 3).min(self.side);
+        around(row)
+            .flat_map(|row| around(column).map(move |column| (row, column)))
+            .filter_map(|(row, column)| self.cells[row * self.side + column])
+            .all(|stem| stem.distance(at) >= LEAST_DISTANCE_M)
+    }
+
+    fn take(&mut self, at: Vec2) {
+        let (column, row) = self.cell(at);
+        self.cells[row * self.side + column] = Some(at);
+    }
+}
