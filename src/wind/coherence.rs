@@ -9,29 +9,14 @@
 //! C_k = L_k L_k^T                           Cholesky factorisation
 //! ```
 //!
-//! and sum_k |row z of L_k|^2 = gamma(z, z, 0) = 1. Wrapping the kernel makes some C_k slightly indefinite; the pivots
-//! that come out negative are dropped, and the rows rescaled to that sum.
-//!
-//! A symmetric matrix is stored as its lower triangle, packed column after column.
+//! and sum_k |row z of L_k|^2 = gamma(z, z, 0) = 1. Wrapping the kernel makes some C_k slightly indefinite at the
+//! slowest frequencies; these lose their negative part, and the rows are rescaled to that sum.
 
-use super::{DecayCoefficients, FieldResolution, LogProfile};
+use super::{
+    DecayCoefficients, FieldResolution, LogProfile,
+    factorisation::{add_scaled, factorise, packed_columns, packed_len},
+};
 use std::f64::consts::TAU;
-
-/// A pivot below this part of its diagonal element counts as zero.
-const LEAST_PIVOT: f64 = 1e-9;
-
-/// Number of stored elements of a symmetric matrix.
-pub(super) const fn packed_len(size: usize) -> usize {
-    size * (size + 1) / 2
-}
-
-/// The columns of a packed lower triangle: column j begins with its diagonal element.
-pub(super) fn packed_columns(size: usize) -> impl DoubleEndedIterator<Item = (usize, std::ops::Range<usize>)> {
-    (0..size).map(move |column| {
-        let start = column * size - column * column.saturating_sub(1) / 2;
-        (column, start..start + size - column)
-    })
-}
 
 /// How often a lag, or a wavenumber, occurs in a period of `columns`: all but the ends stand for two of opposite sign.
 fn multiplicity(index: usize, columns: usize) -> f64 {
@@ -86,7 +71,9 @@ pub(super) struct CoherenceFactors {
     levels: usize,
     /// \[wavenumber\]\[lag\]: the weight of a lag in the real Fourier transform of an even periodic function.
     weights: Vec<f64>,
-    /// \[wavenumber\]\[packed\]
+    /// C_k: \[wavenumber\]\[packed\]
+    matrices: Vec<f64>,
+    /// L_k, likewise.
     factors: Vec<f64>,
     row_powers: Vec<f64>,
 }
@@ -102,6 +89,7 @@ impl CoherenceFactors {
             columns,
             levels,
             weights: (0..lags).flat_map(|wavenumber| (0..lags).map(move |lag| weight(wavenumber, lag))).collect(),
+            matrices: vec![0.0; lags * packed_len(levels)],
             factors: vec![0.0; lags * packed_len(levels)],
             row_powers: vec![0.0; levels],
         }
@@ -110,8 +98,9 @@ impl CoherenceFactors {
     /// Factorises the coherence of one frequency.
     pub fn factorise(&mut self, kernel: &CoherenceKernel) {
         self.transform(&kernel.values);
-        for matrix in self.factors.chunks_exact_mut(packed_len(self.levels)) {
-            cholesky(matrix, self.levels);
+        let packed = packed_len(self.levels);
+        for (matrix, factor) in self.matrices.chunks_exact(packed).zip(self.factors.chunks_exact_mut(packed)) {
+            factorise(matrix, self.levels, factor);
         }
         self.normalise_rows();
     }
@@ -127,7 +116,7 @@ impl CoherenceFactors {
     fn transform(&mut self, kernel: &[f64]) {
         let packed = packed_len(self.levels);
         let lags = self.columns / 2 + 1;
-        for (matrix, weights) in self.factors.chunks_exact_mut(packed).zip(self.weights.chunks_exact(lags)) {
+        for (matrix, weights) in self.matrices.chunks_exact_mut(packed).zip(self.weights.chunks_exact(lags)) {
             matrix.fill(0.0);
             for (values, weight) in kernel.chunks_exact(packed).zip(weights) {
                 add_scaled(matrix, *weight, values);
@@ -156,32 +145,5 @@ impl CoherenceFactors {
                 }
             }
         }
-    }
-}
-
-/// Replaces a packed symmetric matrix by its Cholesky factor. A direction without power, or with less than none, gets
-/// a column of zeros.
-fn cholesky(matrix: &mut [f64], size: usize) {
-    for (column, range) in packed_columns(size) {
-        let (pivots, trailing) = matrix[range.start..].split_at_mut(range.len());
-        let pivot = pivots[0];
-        if pivot <= LEAST_PIVOT {
-            pivots.fill(0.0);
-            continue;
-        }
-        let scale = pivot.sqrt().recip();
-        pivots.iter_mut().for_each(|value| *value *= scale);
-        let mut rest = trailing;
-        for later in 1..size - column {
-            let (updated, next) = rest.split_at_mut(size - column - later);
-            add_scaled(updated, -pivots[later], &pivots[later..]);
-            rest = next;
-        }
-    }
-}
-
-fn add_scaled(sums: &mut [f64], factor: f64, values: &[f64]) {
-    for (sum, value) in sums.iter_mut().zip(values) {
-        *sum += factor * value;
     }
 }

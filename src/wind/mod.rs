@@ -21,6 +21,7 @@
 
 mod coherence;
 mod error;
+mod factorisation;
 mod field;
 mod frame;
 mod interpolation;

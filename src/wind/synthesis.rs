@@ -12,7 +12,8 @@
 
 use super::{
     FieldSettings, LogProfile, TurbulenceBand, TurbulenceComponent,
-    coherence::{CoherenceFactors, CoherenceKernel, decay_times_s, exponentials, packed_columns},
+    coherence::{CoherenceFactors, CoherenceKernel, decay_times_s, exponentials},
+    factorisation::packed_columns,
 };
 use bevy::{
     math::Vec3A,
