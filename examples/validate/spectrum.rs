@@ -10,7 +10,7 @@ use rustfft::{FftPlanner, num_complex::Complex};
 use std::{thread, time::Instant};
 
 /// Realisations in the ensemble. The estimates' own scatter falls with the root of their number.
-const SEEDS: u64 = 320;
+const SEEDS: u64 = 800;
 
 /// The paper's u, v, w as axes of wind coordinates (along, up, across).
 const AXES: [usize; 3] = [0, 2, 1];
