@@ -149,7 +149,7 @@ mod tests {
         let matrix = DMatrix::from_row_slice(3, 3, &[1.0, 0.9, 0.1, 0.9, 1.0, 0.9, 0.1, 0.9, 1.0]);
         let mut eigen = SymmetricEigen::new(matrix.clone());
         assert!(eigen.eigenvalues.min() < -0.1);
-        eigen.eigenvalues.apply(|value| *value = value.max(0.0));
+        eigen.eigenvalues.apply(|value: &mut f64| *value = value.max(0.0));
         // The pivots counted as zero leave at most LARGEST_REMAINDER.
         assert_relative_eq!(factor_of(&matrix), eigen.recompose(), epsilon = 1e-4);
     }

@@ -56,7 +56,7 @@ impl WindField {
     ///
     /// `position` is in world coordinates, m, with y the height above ground. Between samples the turbulence is
     /// interpolated (Catmull-Rom); above the highest and below the lowest level that level's turbulence holds.
-    /// A position or time that is not finite counts as 0.
+    /// A place on an axis of the field that is not finite counts as 0.
     pub fn sample(&self, position: Vec3, time_s: f64) -> Vec3 {
         let mean = self.frame.along * self.profile.speed_at(position.y);
         mean + self.frame.to_world(self.turbulence_at(position, time_s))
@@ -64,10 +64,10 @@ impl WindField {
 
     /// The turbulent part of [`sample`](Self::sample), m/s, in wind coordinates (along, up, across).
     pub fn turbulence_at(&self, position: Vec3, time_s: f64) -> Vec3 {
-        let position = self.frame.to_wind(finite_or_zero(position));
+        let position = self.frame.to_wind(position);
         let resolution = &self.settings.resolution;
         let time_samples = resolution.time_samples as usize;
-        let tau_s = if time_s.is_finite() { time_s } else { 0.0 } - self.delay_s(position.x);
+        let tau_s = time_s - self.delay_s(position.x);
         let time = Taps::periodic(tau_s / f64::from(resolution.time_step_s), time_samples);
         let across = f64::from(position.z) / f64::from(resolution.column_spacing_m);
         let column = Taps::periodic(across, resolution.columns as usize);
@@ -154,10 +154,6 @@ impl WindField {
         let start = (column * resolution.levels as usize + level) * samples;
         &self.turbulence.velocities[start..start + samples]
     }
-}
-
-fn finite_or_zero(position: Vec3) -> Vec3 {
-    Vec3::select(position.is_finite_mask(), position, Vec3::ZERO)
 }
 
 #[cfg(test)]

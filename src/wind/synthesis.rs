@@ -39,6 +39,9 @@ pub(super) struct Turbulence {
 pub(super) fn synthesise(settings: &FieldSettings, profile: &LogProfile, pool: Option<&TaskPool>) -> Turbulence {
     let grid = Grid::new(settings);
     let mut velocities = vec![Vec3A::ZERO; grid.columns * grid.levels * grid.time_samples];
+    if profile.friction_velocity_m_s == 0.0 {
+        return Turbulence { velocities, resolved_fraction: [0.0; 3] };
+    }
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(settings.seed);
     let resolved_fraction = TurbulenceComponent::ALL.map(|component| {
         let bin_seeds: Vec<u64> = (0..grid.bins()).map(|_| rng.random()).collect();
@@ -97,9 +100,6 @@ impl BandSpectrum {
         let mut amplitudes = vec![0.0; grid.bins() * grid.levels];
         let friction_velocity_m_s = f64::from(profile.friction_velocity_m_s);
         let variance = component.variance_factor() * friction_velocity_m_s.powi(2);
-        if variance == 0.0 {
-            return Self { amplitudes, resolved_fraction: 0.0 };
-        }
         let mut fractions = 0.0;
         for level in 0..grid.levels {
             let (height_m, mean_speed_m_s) = profile.turbulence_scales(settings.resolution.level_height_m(level));
@@ -123,12 +123,11 @@ impl BandSpectrum {
     }
 }
 
-/// The factor on all amplitudes of a level whose band holds `fraction` of the variance.
+/// The factor on all amplitudes of a level whose band holds `fraction` > 0 of the variance.
 fn band_factor(band: TurbulenceBand, fraction: f64) -> f64 {
     match band {
         TurbulenceBand::TrueSpectrum => 1.0,
-        TurbulenceBand::TrueVariance if fraction > 0.0 => fraction.sqrt().recip(),
-        TurbulenceBand::TrueVariance => 0.0,
+        TurbulenceBand::TrueVariance => fraction.sqrt().recip(),
     }
 }
 
