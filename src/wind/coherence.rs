@@ -9,7 +9,7 @@
 //! C_k = L_k L_k^T                           Cholesky factorisation
 //! ```
 //!
-//! and sum_k |row z of L_k|^2 = gamma(z, z, 0) = 1. Wrapping the kernel makes some C_k slightly indefinite at the
+//! and `sum_k |row z of L_k|^2 = gamma(z, z, 0) = 1`. Wrapping the kernel makes some C_k slightly indefinite at the
 //! slowest frequencies; these lose their negative part, and the rows are rescaled to that sum.
 
 use super::{
@@ -65,15 +65,15 @@ pub(super) fn exponentials(decay_times_s: &[f64], frequency_hz: f64) -> Vec<f64>
     decay_times_s.iter().map(|time_s| (-frequency_hz * time_s).exp()).collect()
 }
 
-/// Factors L_k of the coherence matrices of one frequency, for the wavenumbers 0..=columns/2.
+/// Factors `L_k` of the coherence matrices of one frequency, for the wavenumbers 0..=columns/2.
 pub(super) struct CoherenceFactors {
     columns: usize,
     levels: usize,
     /// \[wavenumber\]\[lag\]: the weight of a lag in the real Fourier transform of an even periodic function.
     weights: Vec<f64>,
-    /// C_k: \[wavenumber\]\[packed\]
+    /// `C_k`: \[wavenumber\]\[packed\]
     matrices: Vec<f64>,
-    /// L_k, likewise.
+    /// `L_k`, likewise.
     factors: Vec<f64>,
     row_powers: Vec<f64>,
 }
@@ -105,7 +105,7 @@ impl CoherenceFactors {
         self.normalise_rows();
     }
 
-    /// The packed factor L_k of one wavenumber, of either sign, 0..columns.
+    /// The packed factor `L_k` of one wavenumber, of either sign, 0..columns.
     pub fn of_wavenumber(&self, wavenumber: usize) -> &[f64] {
         let packed = packed_len(self.levels);
         let wavenumber = wavenumber.min(self.columns - wavenumber);
@@ -164,7 +164,7 @@ mod tests {
         factors
     }
 
-    /// sum_k (L_k L_k^T)(low, high) cos(k lag): the coherence that amplitudes drawn from the factors have.
+    /// sum_k (`L_k` `L_k`^T)(low, high) cos(k lag): the coherence that amplitudes drawn from the factors have.
     fn coherence(factors: &CoherenceFactors, low: usize, high: usize, lag: usize) -> f64 {
         let of_wavenumber = |wavenumber: usize| {
             let factor = factors.of_wavenumber(wavenumber);

@@ -7,7 +7,7 @@
 //! tau = t - along / U_c
 //! ```
 //!
-//! The whole field drifts at one speed U_c, that of the reference height, so that it stays coherent in height.
+//! The whole field drifts at one speed `U_c`, that of the reference height, so that it stays coherent in height.
 
 use super::{
     FieldSettings, LogProfile, WindError, WindFrame,
@@ -56,8 +56,8 @@ impl WindField {
     ///
     /// `position` is in world coordinates, m, with y the height above ground. Between samples the turbulence is
     /// interpolated (Catmull-Rom), which smooths what neighbouring samples do not share: in the middle between columns
-    /// and levels of the default field the standard deviation is 0.86 of that on them. Above the highest and below the lowest level that level's turbulence holds.
-    /// A place on an axis of the field that is not finite counts as 0.
+    /// and levels of the default field the standard deviation is 0.86 of that on them. Above the highest and below the
+    /// lowest level that level's turbulence holds. A place on an axis of the field that is not finite counts as 0.
     pub fn sample(&self, position: Vec3, time_s: f64) -> Vec3 {
         let mean = self.frame.along * self.profile.speed_at(position.y);
         mean + self.frame.to_world(self.turbulence_at(position, time_s))
