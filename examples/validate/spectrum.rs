@@ -226,14 +226,14 @@ impl Ensemble {
         let mut velocities = Vec::new();
         let mut spectra = Vec::with_capacity(target.columns * self.levels);
         for column in 0..target.columns {
-            for level in 0..self.levels {
+            for (level, whitening) in whitening.iter().enumerate() {
                 field.column_velocities(column, target.heights_m[level] as f32, &mut velocities);
                 let mut series: Vec<_> =
                     velocities.iter().map(|velocity| Complex::from(f64::from(velocity[AXES[component]]))).collect();
                 self.variance[component * self.levels + level] += variance(&series);
                 fft.process(&mut series);
                 series.truncate(target.bins());
-                series.iter_mut().zip(&whitening[level]).for_each(|(value, factor)| *value *= factor);
+                series.iter_mut().zip(whitening).for_each(|(value, factor)| *value *= factor);
                 spectra.push(series);
             }
         }

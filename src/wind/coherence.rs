@@ -9,7 +9,7 @@
 //! C_k = L_k L_k^T                           Cholesky factorisation
 //! ```
 //!
-//! and `sum_k |row z of L_k|^2 = gamma(z, z, 0) = 1`. Wrapping the kernel makes some C_k slightly indefinite at the
+//! and `sum_k |row z of L_k|^2 = gamma(z, z, 0) = 1`. Wrapping the kernel makes some `C_k` slightly indefinite at the
 //! slowest frequencies; these lose their negative part, and the rows are rescaled to that sum.
 
 use super::{
@@ -164,7 +164,7 @@ mod tests {
         factors
     }
 
-    /// sum_k (`L_k` `L_k`^T)(low, high) cos(k lag): the coherence that amplitudes drawn from the factors have.
+    /// `sum_k (L_k L_k^T)(low, high) cos(k lag)`: the coherence that amplitudes drawn from the factors have.
     fn coherence(factors: &CoherenceFactors, low: usize, high: usize, lag: usize) -> f64 {
         let of_wavenumber = |wavenumber: usize| {
             let factor = factors.of_wavenumber(wavenumber);

@@ -13,7 +13,7 @@ use bevy::math::Vec3;
 /// Density of dry air at sea level and 15 C, kg/m^3 (International Standard Atmosphere, ISO 2533:1975).
 pub const AIR_DENSITY_KG_M3: f32 = 1.225;
 
-/// |u_n| u_n, m^2/s^2: the load of air moving at `velocity` (m/s) past a body along the unit vector `direction`,
+/// `|u_n| u_n`, m^2/s^2: the load of air moving at `velocity` (m/s) past a body along the unit vector `direction`,
 /// without the factors that do not depend on the flow.
 pub fn cross_flow_pressure(velocity: Vec3, direction: Vec3) -> Vec3 {
     let cross_flow = velocity.reject_from_normalized(direction);

@@ -5,8 +5,8 @@
 //! u(t, y, z) = Re sum_f a(f, y, z) e^(2 pi i f t)
 //! ```
 //!
-//! `L_k` are the factors of the coherence (see `coherence`): `|L_k|` is the square root of the transformed cross-spectrum,
-//! which the paper's step 2 leaves out. Taking the real part of a sum over positive frequencies is the same as the
+//! `L_k` are the factors of the coherence (see `coherence`): `|L_k|` is the square root of the transformed
+//! cross-spectrum, which the paper's step 2 leaves out. Taking the real part of a sum over positive frequencies is the same as the
 //! conjugate symmetry of equation 13 over *all* bins. The bin of frequency 0 is empty, because the mean is the
 //! profile's; so is the one at half the sampling rate, where a sampled sine cannot be told from its phase.
 
@@ -158,7 +158,7 @@ fn coherent_amplitudes(
     amplitudes
 }
 
-/// sum_j `L_k`(z, j) e^(i phi) for each wavenumber k and level z: \[level\]\[wavenumber\].
+/// `sum_j L_k(z, j) e^(i phi)` for each wavenumber k and level z: \[level\]\[wavenumber\].
 fn draw_amplitudes(plane: &mut [Complex<f32>], factors: &CoherenceFactors, grid: &Grid, rng: &mut Xoshiro256PlusPlus) {
     for wavenumber in 0..grid.columns {
         let factor = factors.of_wavenumber(wavenumber);
@@ -178,7 +178,7 @@ fn scale_to_spectrum(amplitudes: &mut [Complex<f32>], spectrum: &BandSpectrum, g
     }
 }
 
-/// Re sum_f a e^(2 pi i f t) of every column and level, into one component of the velocities.
+/// `Re sum_f a e^(2 pi i f t)` of every column and level, into one component of the velocities.
 fn transform_to_time(
     amplitudes: &[Complex<f32>],
     axis: usize,
