@@ -1,7 +1,8 @@
 //! The wind everywhere and always: a mean profile, and a frozen realisation of turbulence that drifts with it.
 //!
 //! Taylor's hypothesis (Setas et al., equation 14): eddies are carried by the mean wind faster than they change, so the
-//! velocity at a distance x along the wind is what it was here x / U ago. The field is synthesised over time, and read at
+//! velocity at a distance x along the wind is what it was here x / U ago. The field is synthesised over time, and read
+//! at
 //!
 //! ```text
 //! tau = t - along / U_c
@@ -35,8 +36,9 @@ pub struct WindField {
 impl WindField {
     /// Synthesises the field that `settings` describe, or tells what is wrong with them.
     ///
-    /// Takes some 60 ms on two cores at the default resolution: meant for a loading screen or a background task. Uses all threads of Bevy's
-    /// compute pool where it exists; the result is the same, bit by bit, on any number of threads.
+    /// Takes some 60 ms on two cores at the default resolution: meant for a loading screen or a background task. Uses
+    /// all threads of Bevy's compute pool where it exists; the result is the same, bit by bit, on any number of
+    /// threads.
     pub fn synthesise(settings: &FieldSettings) -> Result<Self, WindError> {
         settings.validate()?;
         let profile = LogProfile::from_reference(

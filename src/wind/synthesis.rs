@@ -6,9 +6,9 @@
 //! ```
 //!
 //! `L_k` are the factors of the coherence (see `coherence`): `|L_k|` is the square root of the transformed
-//! cross-spectrum, which the paper's step 2 leaves out. Taking the real part of a sum over positive frequencies is the same as the
-//! conjugate symmetry of equation 13 over *all* bins. The bin of frequency 0 is empty, because the mean is the
-//! profile's; so is the one at half the sampling rate, where a sampled sine cannot be told from its phase.
+//! cross-spectrum, which the paper's step 2 leaves out. Taking the real part of a sum over positive frequencies is the
+//! same as the conjugate symmetry of equation 13 over *all* bins. The bin of frequency 0 is empty, because the mean is
+//! the profile's; so is the one at half the sampling rate, where a sampled sine cannot be told from its phase.
 
 use super::{
     FieldSettings, LogProfile, TurbulenceBand, TurbulenceComponent,
