@@ -7,8 +7,10 @@ pub(super) struct Taps {
 }
 
 impl Taps {
-    /// On an axis of `count` samples that begins again after the last. `coordinate` counts samples and is finite.
+    /// On an axis of `count` samples that begins again after the last. `coordinate` counts samples; 0 where it is not
+    /// finite.
     pub fn periodic(coordinate: f64, count: usize) -> Self {
+        let coordinate = if coordinate.is_finite() { coordinate } else { 0.0 };
         let cell = coordinate.floor();
         // The remainder is whole and below `count`, however far away the cell is.
         let first = cell.rem_euclid(count as f64) as usize + count - 1;

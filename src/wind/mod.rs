@@ -25,6 +25,7 @@ mod coherence;
 mod cross_fade;
 mod current;
 mod error;
+mod factorisation;
 mod field;
 mod frame;
 #[cfg(feature = "render")]

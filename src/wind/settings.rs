@@ -17,7 +17,7 @@ const DECAY: RangeInclusive<f32> = 0.0..=100.0;
 const TIME_SAMPLES: RangeInclusive<u32> = 16..=65_536;
 const COLUMNS: RangeInclusive<u32> = 1..=128;
 /// The work grows with the cube of the levels.
-const LEVELS: RangeInclusive<u32> = 1..=64;
+const LEVELS: RangeInclusive<u32> = 1..=32;
 /// 16 bytes each: 128 MiB.
 const MOST_SAMPLES: u64 = 1 << 23;
 const TIME_STEP_S: RangeInclusive<f32> = 0.005..=2.0;
@@ -56,7 +56,7 @@ pub struct FieldResolution {
     pub time_samples: u32,
     /// Columns in a period across the wind. domain: \[1, 128\]. One column blows alike everywhere across.
     pub columns: u32,
-    /// Levels in height. domain: \[1, 64\]. The product of the three counts is at most 2^23.
+    /// Levels in height. domain: \[1, 32\]. The product of the three counts is at most 2^23.
     pub levels: u32,
     /// units: s, domain: \[0.005, 2\]. The field knows frequencies below 1 / (2 `time_step_s`).
     pub time_step_s: f32,

@@ -5,18 +5,19 @@
 //! u(t, y, z) = Re sum_f a(f, y, z) e^(2 pi i f t)
 //! ```
 //!
-//! L_k are the factors of the coherence (see `coherence`): |L_k| is the square root of the transformed cross-spectrum,
-//! which the paper's step 2 leaves out. Taking the real part of a sum over positive frequencies is the same as the
-//! conjugate symmetry of equation 13 over *all* bins. The bin of frequency 0 is empty, because the mean is the
-//! profile's; so is the one at half the sampling rate, where a sampled sine cannot be told from its phase.
+//! `L_k` are the factors of the coherence (see `coherence`): `|L_k|` is the square root of the transformed
+//! cross-spectrum, which the paper's step 2 leaves out. Taking the real part of a sum over positive frequencies is the
+//! same as the conjugate symmetry of equation 13 over *all* bins. The bin of frequency 0 is empty, because the mean is
+//! the profile's; so is the one at half the sampling rate, where a sampled sine cannot be told from its phase.
 
 use super::{
     FieldSettings, LogProfile, TurbulenceBand, TurbulenceComponent,
-    coherence::{CoherenceFactors, CoherenceKernel, decay_times_s, exponentials, packed_columns},
+    coherence::{CoherenceFactors, CoherenceKernel, decay_times_s, exponentials},
+    factorisation::packed_columns,
 };
 use bevy::{
     math::Vec3A,
-    tasks::{ComputeTaskPool, ParallelSliceMut},
+    tasks::{ParallelSliceMut, TaskPool},
 };
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rustfft::{Fft, FftPlanner, num_complex::Complex};
@@ -34,17 +35,20 @@ pub(super) struct Turbulence {
     pub resolved_fraction: [f32; 3],
 }
 
-/// Draws the turbulence that `settings`, which must be valid, and `profile` describe.
-pub(super) fn synthesise(settings: &FieldSettings, profile: &LogProfile) -> Turbulence {
+/// Draws the turbulence that `settings`, which must be valid, and `profile` describe; on all threads of `pool`, if any.
+pub(super) fn synthesise(settings: &FieldSettings, profile: &LogProfile, pool: Option<&TaskPool>) -> Turbulence {
     let grid = Grid::new(settings);
     let mut velocities = vec![Vec3A::ZERO; grid.columns * grid.levels * grid.time_samples];
+    if profile.friction_velocity_m_s == 0.0 {
+        return Turbulence { velocities, resolved_fraction: [0.0; 3] };
+    }
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(settings.seed);
     let resolved_fraction = TurbulenceComponent::ALL.map(|component| {
         let bin_seeds: Vec<u64> = (0..grid.bins()).map(|_| rng.random()).collect();
         let spectrum = BandSpectrum::new(component, settings, profile, &grid);
-        let mut amplitudes = coherent_amplitudes(component, settings, profile, &grid, &bin_seeds);
+        let mut amplitudes = coherent_amplitudes(component, settings, profile, &grid, &bin_seeds, pool);
         scale_to_spectrum(&mut amplitudes, &spectrum, &grid);
-        transform_to_time(&amplitudes, component, &grid, &mut velocities);
+        transform_to_time(&amplitudes, component.axis(), &grid, &mut velocities, pool);
         spectrum.resolved_fraction
     });
     Turbulence { velocities, resolved_fraction }
@@ -96,9 +100,6 @@ impl BandSpectrum {
         let mut amplitudes = vec![0.0; grid.bins() * grid.levels];
         let friction_velocity_m_s = f64::from(profile.friction_velocity_m_s);
         let variance = component.variance_factor() * friction_velocity_m_s.powi(2);
-        if variance == 0.0 {
-            return Self { amplitudes, resolved_fraction: 0.0 };
-        }
         let mut fractions = 0.0;
         for level in 0..grid.levels {
             let (height_m, mean_speed_m_s) = profile.turbulence_scales(settings.resolution.level_height_m(level));
@@ -122,12 +123,11 @@ impl BandSpectrum {
     }
 }
 
-/// The factor on all amplitudes of a level whose band holds `fraction` of the variance.
+/// The factor on all amplitudes of a level whose band holds `fraction` > 0 of the variance.
 fn band_factor(band: TurbulenceBand, fraction: f64) -> f64 {
     match band {
         TurbulenceBand::TrueSpectrum => 1.0,
-        TurbulenceBand::TrueVariance if fraction > 0.0 => fraction.sqrt().recip(),
-        TurbulenceBand::TrueVariance => 0.0,
+        TurbulenceBand::TrueVariance => fraction.sqrt().recip(),
     }
 }
 
@@ -138,12 +138,13 @@ fn coherent_amplitudes(
     profile: &LogProfile,
     grid: &Grid,
     bin_seeds: &[u64],
+    pool: Option<&TaskPool>,
 ) -> Vec<Complex<f32>> {
     let times_s = decay_times_s(&settings.resolution, profile, settings.coherence.of(component));
     let steps = exponentials(&times_s, grid.frequency_step_hz);
     let across: Arc<dyn Fft<f32>> = FftPlanner::new().plan_fft_inverse(grid.columns);
     let mut amplitudes = vec![Complex::ZERO; grid.bins() * grid.plane()];
-    for_each_chunk(&mut amplitudes, BINS_PER_TASK * grid.plane(), |task, planes| {
+    for_each_chunk(pool, &mut amplitudes, BINS_PER_TASK * grid.plane(), |task, planes| {
         let first_bin = task * BINS_PER_TASK;
         let mut kernel = CoherenceKernel::new(&times_s, grid.frequency_hz(first_bin), &steps);
         let mut factors = CoherenceFactors::new(grid.columns, grid.levels);
@@ -157,7 +158,7 @@ fn coherent_amplitudes(
     amplitudes
 }
 
-/// sum_j L_k(z, j) e^(i phi) for each wavenumber k and level z: \[level\]\[wavenumber\].
+/// `sum_j L_k(z, j) e^(i phi)` for each wavenumber k and level z: \[level\]\[wavenumber\].
 fn draw_amplitudes(plane: &mut [Complex<f32>], factors: &CoherenceFactors, grid: &Grid, rng: &mut Xoshiro256PlusPlus) {
     for wavenumber in 0..grid.columns {
         let factor = factors.of_wavenumber(wavenumber);
@@ -177,16 +178,16 @@ fn scale_to_spectrum(amplitudes: &mut [Complex<f32>], spectrum: &BandSpectrum, g
     }
 }
 
-/// Re sum_f a e^(2 pi i f t) of every column and level, into one component of the velocities.
+/// `Re sum_f a e^(2 pi i f t)` of every column and level, into one component of the velocities.
 fn transform_to_time(
     amplitudes: &[Complex<f32>],
-    component: TurbulenceComponent,
+    axis: usize,
     grid: &Grid,
     velocities: &mut [Vec3A],
+    pool: Option<&TaskPool>,
 ) {
     let to_time: Arc<dyn Fft<f32>> = FftPlanner::new().plan_fft_inverse(grid.time_samples);
-    let axis = component.axis();
-    for_each_chunk(velocities, grid.levels * grid.time_samples, |column, series_of_levels| {
+    for_each_chunk(pool, velocities, grid.levels * grid.time_samples, |column, series_of_levels| {
         let mut series = vec![Complex::ZERO; grid.time_samples];
         let mut scratch = vec![Complex::ZERO; to_time.get_inplace_scratch_len()];
         for (level, velocities) in series_of_levels.chunks_exact_mut(grid.time_samples).enumerate() {
@@ -203,13 +204,18 @@ fn transform_to_time(
     });
 }
 
-/// Calls `work` with the index of each chunk and the chunk, on all threads of the compute pool where there is one.
-fn for_each_chunk<T: Send>(values: &mut [T], chunk_size: usize, work: impl Fn(usize, &mut [T]) + Send + Sync) {
-    match ComputeTaskPool::try_get() {
-        Some(pool) => {
-            let mut values = values;
-            values.par_chunk_map_mut(pool, chunk_size, work);
-        }
+/// Calls `work` with the index of each chunk and the chunk, on all threads of the pool where there is one.
+fn for_each_chunk<T: Send>(
+    pool: Option<&TaskPool>,
+    mut values: &mut [T],
+    chunk_size: usize,
+    work: impl Fn(usize, &mut [T]) + Send + Sync,
+) {
+    match pool {
+        Some(pool) => drop(values.par_chunk_map_mut(pool, chunk_size, work)),
         None => values.chunks_mut(chunk_size).enumerate().for_each(|(index, chunk)| work(index, chunk)),
     }
 }
+
+#[cfg(test)]
+mod tests;
