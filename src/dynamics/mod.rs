@@ -1,1 +1,3 @@
 //! How a beam answers a load.
+
+pub mod leaf;

@@ -1,0 +1,190 @@
+//! Foliage: where the sprays of leaves sit and how they lie.
+//!
+//! A spray is a stretch of twig with its leaves, one card to draw. Sprays sit along the thin branches and close each
+//! branch's tip, face the sky and the way out of the crown as leaves do, and know how deep in the crown they are:
+//! Reeves & Blau (1985, section 4) shade a tree by that depth.
+
+use bevy::{math::Vec3, reflect::Reflect};
+use rand::{Rng, RngExt};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    growth::{envelope::Envelope, reeves::leave},
+    leaf_texture::Leaf,
+    skeleton::{LeafCluster, SkeletonBeam, continuations},
+    species::{SpeciesError, require},
+};
+use crate::dynamics::leaf::LeafResponse;
+
+/// Most sprays on one tree.
+pub const CLUSTERS_LIMIT: usize = 16_384;
+
+/// What a tree wears.
+#[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Foliage {
+    /// First order of branches that carries leaves, 0 to 5.
+    pub first_order: u8,
+    /// Where on such a branch the first spray sits, as a share of its first beam: 0 to 1.
+    pub first_at: f32,
+    /// Mean distance between sprays, m: 0.03 to 10.
+    pub spacing_m: f32,
+    /// Length of a spray, m: 0.02 to 5.
+    pub size_m: f32,
+    /// Random part of that length, 0 to 0.9.
+    pub size_spread: f32,
+    /// Width of a spray's card as a share of its length, 0.1 to 2.
+    pub aspect: f32,
+    /// How far each half of a card folds down from its axis, degrees: -80 to 80.
+    pub fold_deg: f32,
+    /// Angle between a spray and its branch, degrees: 0 to 150.
+    pub angle_deg: f32,
+    /// Turn about the branch from one spray to the next, degrees: -360 to 360. Turn 0 is level, 90 is up.
+    pub roll_deg: f32,
+    /// Random part of the turn, degrees: 0 to 180.
+    pub roll_spread_deg: f32,
+    /// How much sprays hang (negative: rise), -2 to 2.
+    pub droop: f32,
+    /// How much a spray's face seeks the sky rather than the way out of the crown, 0 to 1.
+    pub skyward: f32,
+    /// How much it faces anywhere, 0 to 3.
+    pub disorder: f32,
+    /// How dark the middle of the crown is: light falls by `exp(-extinction depth)`, 0 to 6.
+    pub extinction: f32,
+    /// The leaves of a spray.
+    pub leaf: Leaf,
+    /// How they answer the wind.
+    pub response: LeafResponse,
+}
+
+impl Default for Foliage {
+    /// A pedunculate oak's.
+    fn default() -> Self {
+        Self {
+            first_order: 2,
+            first_at: 0.25,
+            spacing_m: 0.4,
+            size_m: 1.05,
+            size_spread: 0.35,
+            aspect: 0.95,
+            fold_deg: 18.0,
+            angle_deg: 55.0,
+            roll_deg: 137.5,
+            roll_spread_deg: 40.0,
+            droop: 0.15,
+            skyward: 0.45,
+            disorder: 0.6,
+            extinction: 1.7,
+            leaf: Leaf::default(),
+            response: LeafResponse::default(),
+        }
+    }
+}
+
+impl Foliage {
+    pub(super) fn validate(&self) -> Result<(), SpeciesError> {
+        require("first_order", f32::from(self.first_order), 0.0..=5.0)?;
+        require("first_at", self.first_at, 0.0..=1.0)?;
+        require("spacing_m", self.spacing_m, 0.03..=10.0)?;
+        require("size_m", self.size_m, 0.02..=5.0)?;
+        require("size_spread", self.size_spread, 0.0..=0.9)?;
+        require("aspect", self.aspect, 0.1..=2.0)?;
+        require("fold_deg", self.fold_deg, -80.0..=80.0)?;
+        require("angle_deg", self.angle_deg, 0.0..=150.0)?;
+        require("roll_deg", self.roll_deg, -360.0..=360.0)?;
+        require("roll_spread_deg", self.roll_spread_deg, 0.0..=180.0)?;
+        require("droop", self.droop, -2.0..=2.0)?;
+        require("skyward", self.skyward, 0.0..=1.0)?;
+        require("disorder", self.disorder, 0.0..=3.0)?;
+        require("extinction", self.extinction, 0.0..=6.0)?;
+        self.leaf.validate().map_err(|error| error.inside("leaf"))
+    }
+
+    /// Share of the sky's light that reaches a depth in the crown, 0 to 1.
+    #[must_use]
+    pub fn light(&self, depth: f32) -> f32 {
+        (-self.extinction * depth).exp()
+    }
+}
+
+/// Hangs sprays on all beams that carry leaves.
+pub(super) fn place(
+    foliage: &Foliage,
+    beams: &[SkeletonBeam],
+    envelope: &Envelope,
+    random: &mut impl Rng,
+) -> Vec<LeafCluster> {
+    let mut clusters = Vec::new();
+    let mut tones = vec![0.0; beams.len()];
+    let continuations = continuations(beams);
+    for (index, beam) in beams.iter().enumerate() {
+        // A branch has a tone of its own, close to that of the branch it grows on.
+        let own_tone: f32 = random.random();
+        tones[index] = beam.parent.map_or(0.5, |parent| 0.6 * tones[parent as usize] + 0.4 * own_tone);
+        if beam.order < foliage.first_order {
+            continue;
+        }
+        let continues = beam.attach >= 1.0 && beam.parent.is_some_and(|p| beams[p as usize].order == beam.order);
+        let first_at = if continues { 0.0 } else { foliage.first_at };
+        let twig = Twig { foliage, beam, index: index as u32, envelope, tone: tones[index] };
+        twig.hang(first_at, continuations[index].is_none(), &mut clusters, random);
+        if clusters.len() >= CLUSTERS_LIMIT {
+            clusters.truncate(CLUSTERS_LIMIT);
+            break;
+        }
+    }
+    clusters
+}
+
+struct Twig<'a> {
+    foliage: &'a Foliage,
+    beam: &'a SkeletonBeam,
+    index: u32,
+    envelope: &'a Envelope,
+    tone: f32,
+}
+
+impl Twig<'_> {
+    fn hang(&self, first_at: f32, ends: bool, clusters: &mut Vec<LeafCluster>, random: &mut impl Rng) {
+        let spacing = self.foliage.spacing_m / self.beam.length_m;
+        let mut roll = if random.random::<bool>() { 0.0 } else { self.foliage.roll_deg.to_radians() };
+        let mut at = first_at + 0.5 * spacing * random.random::<f32>();
+        let spread = self.foliage.roll_spread_deg.to_radians();
+        while at < 1.0 && clusters.len() < CLUSTERS_LIMIT {
+            let turn = roll + spread * random.random_range(-1.0..1.0);
+            clusters.push(self.spray(at, self.foliage.angle_deg.to_radians(), turn, random));
+            roll += self.foliage.roll_deg.to_radians();
+            at += spacing * random.random_range(0.7..1.3);
+        }
+        if ends {
+            clusters.push(self.spray(1.0, 0.0, 0.0, random));
+        }
+    }
+
+    fn spray(&self, at: f32, angle_rad: f32, roll_rad: f32, random: &mut impl Rng) -> LeafCluster {
+        let anchor = self.beam.path(at);
+        let outward = self.envelope.outward(anchor);
+        let axis = leave(self.beam.tangent(at), angle_rad, roll_rad) - Vec3::Y * self.foliage.droop;
+        let axis = axis.try_normalize().unwrap_or(self.beam.direction);
+        let face = outward.lerp(Vec3::Y, self.foliage.skyward) + unit(random) * self.foliage.disorder;
+        LeafCluster {
+            beam: self.index,
+            at,
+            anchor,
+            axis,
+            normal: face.reject_from_normalized(axis).try_normalize().unwrap_or(axis.any_orthonormal_vector()),
+            size_m: self.foliage.size_m * (1.0 + self.foliage.size_spread * random.random_range(-1.0..1.0)),
+            phase: random.random(),
+            depth: self.envelope.depth(anchor),
+            tint: 0.6 * self.tone + 0.4 * random.random::<f32>(),
+        }
+    }
+}
+
+/// Uniform on the unit sphere (Archimedes).
+fn unit(random: &mut impl Rng) -> Vec3 {
+    let height: f32 = random.random_range(-1.0..1.0);
+    let heading = random.random_range(0.0..std::f32::consts::TAU);
+    let radius = (1.0 - height * height).sqrt();
+    Vec3::new(radius * heading.cos(), height, radius * heading.sin())
+}

@@ -1,0 +1,52 @@
+//! How thick the wood is: the pipe model.
+//!
+//! Shinozaki et al. (1964): a tree is a bundle of unit pipes, one from each bunch of leaves down to the root, so a
+//! cross-section counts the leaves beyond it. With Murray's exponent `e` (2 is Leonardo's rule of equal areas), a
+//! beam beyond which `n` of the tree's `N` leaf clusters lie has the radius `R (n / N)^(1/e)`, `R` the trunk's.
+
+use crate::tree::skeleton::{LeafCluster, SkeletonBeam};
+
+/// A child is at most this thick beside its parent, so that its first ring hides inside.
+const CHILD_TO_PARENT_LIMIT: f32 = 0.85;
+
+/// Sets every beam's radii, so that none grows outward.
+pub(in crate::tree) fn assign_radii(
+    beams: &mut [SkeletonBeam],
+    clusters: &[LeafCluster],
+    trunk_radius_m: f32,
+    exponent: f32,
+) {
+    let (at_base, at_tip) = count_pipes(beams, clusters);
+    let total = at_base.first().copied().unwrap_or(1.0);
+    let radius = |pipes: f32| trunk_radius_m * (pipes / total).powf(1.0 / exponent);
+    for index in 0..beams.len() {
+        let beam = beams[index];
+        let limit = beam.parent.map_or(trunk_radius_m, |parent| {
+            let parent = &beams[parent as usize];
+            let continues = beam.attach >= 1.0 && beam.order == parent.order;
+            parent.radius_m(beam.attach) * if continues { 1.0 } else { CHILD_TO_PARENT_LIMIT }
+        });
+        beams[index].base_radius_m = radius(at_base[index]).min(limit);
+        beams[index].tip_radius_m = radius(at_tip[index]).min(beams[index].base_radius_m);
+    }
+}
+
+/// Pipes through the base and the tip of each beam: at least one.
+fn count_pipes(beams: &[SkeletonBeam], clusters: &[LeafCluster]) -> (Vec<f32>, Vec<f32>) {
+    let mut at_base = vec![0.0_f32; beams.len()];
+    let mut at_tip = vec![0.0_f32; beams.len()];
+    for cluster in clusters {
+        let carried = if cluster.at >= 1.0 { &mut at_tip } else { &mut at_base };
+        carried[cluster.beam as usize] += 1.0;
+    }
+    for index in (0..beams.len()).rev() {
+        at_tip[index] = at_tip[index].max(1.0);
+        at_base[index] += at_tip[index];
+        if let Some(parent) = beams[index].parent {
+            let pipes = at_base[index];
+            let carried = if beams[index].attach >= 1.0 { &mut at_tip } else { &mut at_base };
+            carried[parent as usize] += pipes;
+        }
+    }
+    (at_base, at_tip)
+}

@@ -1,0 +1,171 @@
+//! The surface of the wood: one tube per branch, from its root inside the parent to its closed tip.
+//!
+//! Every vertex is bound to one beam at one place on it and moves with that cross-section. No gap opens when the
+//! beams bend, for three reasons. A branch's beams share the ring at their joint: the end of one and the start of the
+//! next move alike. A branch's first ring lies wholly inside its parent, and it and the collar around the joint are
+//! bound to the branch's root, which moves with the parent. The trunk starts below the ground.
+
+use bevy::math::Vec3;
+
+use super::{
+    growth::{Growth, reeves::Trunk},
+    skeleton::{Skeleton, SkeletonBeam},
+    species::Species,
+    tube::{Ring, Tube},
+};
+
+/// Vertices of the wood, ready for a mesh of triangles, counter-clockwise from outside.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WoodVertices {
+    /// Rest positions, local to the tree, m.
+    pub positions: Vec<[f32; 3]>,
+    /// Unit normals.
+    pub normals: Vec<[f32; 3]>,
+    /// Bark coordinates: u whole turns around, v along, one unit being [`Bark::tile_m`](super::bark::Bark::tile_m).
+    pub uvs: Vec<[f32; 2]>,
+    /// Beam index (whole), place on that beam 0..1, leaf phase (0 for wood), ambient light 0..1.
+    pub sway: Vec<[f32; 4]>,
+    /// Triangles.
+    pub indices: Vec<u32>,
+}
+
+/// How far the trunk reaches into the ground, m, so that a slope uncovers no hole.
+const ROOT_DEPTH_M: f32 = 0.35;
+/// Thinner branches have no collar: nobody sees it.
+const COLLAR_LEAST_RADIUS_M: f32 = 0.03;
+/// How much wider than the branch its collar is.
+const COLLAR_SWELLING: f32 = 1.3;
+/// Thinner tips run into a point, thicker ones end in a cap.
+const POINTED_TIP_RADIUS_M: f32 = 0.02;
+/// Longest stretch of a beam without a ring, m: what its bending may be drawn with.
+const LONGEST_RING_STEP_M: f32 = 2.2;
+
+/// Clothes a skeleton in bark.
+#[must_use]
+pub fn wood(species: &Species, skeleton: &Skeleton) -> WoodVertices {
+    let mut vertices = WoodVertices::default();
+    let Growth::ReevesBlau(growth) = &species.growth;
+    let continuations = skeleton.continuations();
+    let mut continues = vec![false; skeleton.beams.len()];
+    continuations.iter().flatten().for_each(|&next| continues[next as usize] = true);
+
+    for first in (0..skeleton.beams.len()).filter(|&index| !continues[index]) {
+        let chain: Vec<usize> =
+            std::iter::successors(Some(first), |&beam| continuations[beam].map(|next| next as usize)).collect();
+        let branch = Branch { skeleton, chain: &chain };
+        let base_radius_m = skeleton.beams[first].base_radius_m;
+        let mut tube = Tube::new(base_radius_m, species.wood.bark.tile_m);
+        branch.rings(&growth.trunk, |ring| tube.push(ring));
+        tube.write(&mut vertices, |point| species.foliage.light(skeleton.envelope.depth(point)));
+    }
+    vertices
+}
+
+struct Branch<'a> {
+    skeleton: &'a Skeleton,
+    chain: &'a [usize],
+}
+
+impl Branch<'_> {
+    /// All rings from root to tip.
+    fn rings(&self, trunk: &Trunk, mut push: impl FnMut(Ring)) {
+        let first = &self.skeleton.beams[self.chain[0]];
+        let covered = match first.parent {
+            None => self.root_rings(trunk, &mut push),
+            Some(parent) => self.collar_rings(&self.skeleton.beams[parent as usize], &mut push),
+        };
+        for (place, &index) in self.chain.iter().enumerate() {
+            let beam = &self.skeleton.beams[index];
+            let next = self.chain.get(place + 1).map(|&next| &self.skeleton.beams[next]);
+            let steps = steps(beam);
+            for step in 1..=steps {
+                let s = step as f32 / steps as f32;
+                let buried = place == 0 && s <= covered;
+                if buried || (step == steps && next.is_none() && beam.tip_radius_m < POINTED_TIP_RADIUS_M) {
+                    continue;
+                }
+                let onward = if step == steps { next.map_or(Vec3::ZERO, |next| next.tangent(0.0)) } else { Vec3::ZERO };
+                let mut ring = ring(beam, index, s);
+                ring.tangent = (ring.tangent + onward).try_normalize().unwrap_or(ring.tangent);
+                push(ring);
+            }
+        }
+        self.tip(&mut push);
+    }
+
+    /// The trunk's rings up to the end of its flare; answers the place on the beam that they reach.
+    fn root_rings(&self, trunk: &Trunk, push: &mut impl FnMut(Ring)) -> f32 {
+        let beam = &self.skeleton.beams[0];
+        let height_m = trunk.flare_height_m;
+        let mut covered = 0.0;
+        for share in [-1.0, 0.0, 0.3, 0.7, 1.3, 2.2, 3.5] {
+            let at_m = if share < 0.0 { -ROOT_DEPTH_M } else { share * height_m };
+            let s = at_m / beam.length_m;
+            if s > 0.9 {
+                break;
+            }
+            let flare = trunk.flare * (-at_m.max(0.0) / height_m).exp();
+            let mut ring = ring(beam, 0, s.max(0.0));
+            ring.centre = beam.path(s.max(0.0)) + beam.direction * at_m.min(0.0);
+            ring.radius_m *= 1.0 + flare;
+            ring.lobes = (trunk.buttresses, 0.45 * flare / (1.0 + flare));
+            push(ring);
+            covered = s.max(0.0);
+        }
+        covered
+    }
+
+    /// The ring inside the parent and the swelling around the joint, both moving with the parent.
+    fn collar_rings(&self, parent: &SkeletonBeam, push: &mut impl FnMut(Ring)) -> f32 {
+        let index = self.chain[0];
+        let beam = &self.skeleton.beams[index];
+        let inside_m = parent.radius_m(beam.attach);
+        let mut root = ring(beam, index, 0.0);
+        root.radius_m = (root.radius_m * COLLAR_SWELLING).min(0.8 * inside_m);
+        push(root);
+
+        let slant = beam.direction.cross(parent.tangent(beam.attach)).length().max(0.4);
+        let emerges = (1.05 * inside_m / slant + 0.3 * beam.base_radius_m) / beam.length_m;
+        if beam.base_radius_m < COLLAR_LEAST_RADIUS_M || emerges > 0.35 {
+            return 0.0;
+        }
+        for (at, swelling) in [(0.7 * emerges, COLLAR_SWELLING), (1.7 * emerges, 1.04)] {
+            let mut collar = ring(beam, index, at);
+            collar.radius_m = (collar.radius_m * swelling).min(inside_m);
+            collar.s = if swelling > 1.1 { 0.0 } else { at };
+            push(collar);
+        }
+        1.8 * emerges
+    }
+
+    fn tip(&self, push: &mut impl FnMut(Ring)) {
+        let index = self.chain[self.chain.len() - 1];
+        let beam = &self.skeleton.beams[index];
+        let mut apex = ring(beam, index, 1.0);
+        if apex.radius_m >= POINTED_TIP_RADIUS_M {
+            apex.centre += apex.tangent * (0.7 * apex.radius_m);
+        }
+        apex.radius_m = 0.0;
+        push(apex);
+    }
+}
+
+fn ring(beam: &SkeletonBeam, index: usize, s: f32) -> Ring {
+    Ring {
+        centre: beam.path(s),
+        tangent: beam.tangent(s),
+        radius_m: beam.radius_m(s),
+        lobes: (0, 0.0),
+        beam: index as u32,
+        s,
+    }
+}
+
+/// Rings a beam needs: enough that the polygon keeps within a quarter of its radius of the bowed path, and that long
+/// beams bend smoothly.
+fn steps(beam: &SkeletonBeam) -> usize {
+    let tolerance_m = 0.35 * beam.base_radius_m + 0.015;
+    let curved = (beam.bow.length() / tolerance_m).sqrt();
+    let long = beam.length_m / LONGEST_RING_STEP_M;
+    curved.max(long).ceil().clamp(1.0, 24.0) as usize
+}

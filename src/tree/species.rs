@@ -1,0 +1,169 @@
+//! A species: the numbers from which all individuals of one kind of tree grow.
+//!
+//! A species is written in RON, every field with its unit in its name; what is left out takes the default, which is
+//! a pedunculate oak. [`Species::from_ron`] refuses what does not make a tree and says which field, which value and
+//! what is allowed, so that an editor never crashes on a slip of the keyboard.
+
+use std::ops::RangeInclusive;
+
+use bevy::reflect::Reflect;
+use ron::{Options, extensions::Extensions};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::{
+    bark::Bark,
+    foliage::Foliage,
+    growth::{Growth, reeves::ReevesBlau},
+};
+
+/// One kind of tree.
+#[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Species {
+    /// What the species is called.
+    pub name: String,
+    /// Number of different individuals that a forest of this species repeats, 1 to 16.
+    pub variants: u32,
+    /// How the skeleton grows.
+    pub growth: Growth,
+    /// What its beams are made of.
+    pub wood: Wood,
+    /// What it carries.
+    pub foliage: Foliage,
+}
+
+impl Default for Species {
+    fn default() -> Self {
+        Self {
+            name: "oak".into(),
+            variants: 4,
+            growth: Growth::ReevesBlau(ReevesBlau::default()),
+            wood: Wood::default(),
+            foliage: Foliage::default(),
+        }
+    }
+}
+
+/// Green wood: what decides how fast a beam swings and how soon it rests.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Wood {
+    /// Young's modulus along the grain, Pa: 1e8 to 1e11.
+    pub young_modulus_pa: f32,
+    /// Density of the living wood, water and all, kg/m^3: 100 to 2000.
+    pub density_kg_m3: f32,
+    /// Damping ratio of the whole crown, foliage included, 0.005 to 2.
+    pub damping_ratio: f32,
+    /// Its bark.
+    pub bark: Bark,
+}
+
+impl Default for Wood {
+    /// Green oak: Young's modulus and density after the Wood Handbook (Forest Products Laboratory, 2010, table 5-3:
+    /// white oak, green); damping in the middle of the 0.05 to 0.15 measured on trees in leaf.
+    fn default() -> Self {
+        Self { young_modulus_pa: 8.6e9, density_kg_m3: 1000.0, damping_ratio: 0.1, bark: Bark::default() }
+    }
+}
+
+impl Wood {
+    fn validate(&self) -> Result<(), SpeciesError> {
+        require("young_modulus_pa", self.young_modulus_pa, 1.0e8..=1.0e11)?;
+        require("density_kg_m3", self.density_kg_m3, 100.0..=2000.0)?;
+        require("damping_ratio", self.damping_ratio, 0.005..=2.0)?;
+        self.bark.validate().map_err(|error| error.inside("bark"))
+    }
+}
+
+impl Species {
+    /// Largest number of individuals per species: each is a set of meshes of its own.
+    pub const VARIANTS_LIMIT: u32 = 16;
+
+    /// Reads and checks a species.
+    ///
+    /// # Errors
+    /// [`SpeciesError::Syntax`] with line and column where `text` is no RON of a species, [`SpeciesError::OutOfRange`]
+    /// where it is one but does not make a tree.
+    pub fn from_ron(text: &str) -> Result<Self, SpeciesError> {
+        let extensions = Extensions::UNWRAP_VARIANT_NEWTYPES | Extensions::IMPLICIT_SOME;
+        let species: Self =
+            Options::default().with_default_extension(extensions).from_str(text).map_err(|error| {
+                SpeciesError::Syntax {
+                    line: error.span.start.line,
+                    column: error.span.start.col,
+                    message: error.code.to_string(),
+                }
+            })?;
+        species.validate()?;
+        Ok(species)
+    }
+
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`SpeciesError::OutOfRange`] for the first field outside its domain.
+    pub fn validate(&self) -> Result<(), SpeciesError> {
+        if !(1..=Self::VARIANTS_LIMIT).contains(&self.variants) {
+            return Err(SpeciesError::out_of_range("variants", self.variants, "1 to 16"));
+        }
+        self.growth.validate().map_err(|error| error.inside("growth"))?;
+        self.wood.validate().map_err(|error| error.inside("wood"))?;
+        self.foliage.validate().map_err(|error| error.inside("foliage"))
+    }
+}
+
+/// Why a species was refused.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum SpeciesError {
+    /// The text is not the RON of a species.
+    #[error("line {line}, column {column}: {message}")]
+    Syntax {
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// What is wrong there.
+        message: String,
+    },
+    /// A field is outside its domain.
+    #[error("`{field}` is {value}, but must be {allowed}")]
+    OutOfRange {
+        /// Path of the field, such as `growth.trunk.height_m`.
+        field: String,
+        /// Its value.
+        value: String,
+        /// What would be allowed.
+        allowed: String,
+    },
+}
+
+impl SpeciesError {
+    pub(super) fn out_of_range(field: &str, value: impl ToString, allowed: impl ToString) -> Self {
+        Self::OutOfRange { field: field.into(), value: value.to_string(), allowed: allowed.to_string() }
+    }
+
+    /// The same error seen from the struct around it: `parent` comes before the field's path.
+    #[must_use]
+    pub(super) fn inside(self, parent: &str) -> Self {
+        match self {
+            Self::OutOfRange { field, value, allowed } => {
+                Self::OutOfRange { field: format!("{parent}.{field}"), value, allowed }
+            }
+            syntax @ Self::Syntax { .. } => syntax,
+        }
+    }
+}
+
+/// Refuses a value outside `allowed`, NaN among them.
+pub(super) fn require(field: &str, value: f32, allowed: RangeInclusive<f32>) -> Result<(), SpeciesError> {
+    if allowed.contains(&value) {
+        return Ok(());
+    }
+    Err(SpeciesError::out_of_range(field, value, format!("{} to {}", allowed.start(), allowed.end())))
+}
+
+/// Refuses a colour with a channel outside 0 to 1.
+pub(super) fn require_colour(field: &str, colour: [f32; 3]) -> Result<(), SpeciesError> {
+    colour.into_iter().try_for_each(|channel| require(field, channel, 0.0..=1.0))
+}

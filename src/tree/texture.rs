@@ -1,0 +1,148 @@
+//! Pixels with a full chain of mips, made on the CPU.
+//!
+//! Colours are averaged as light (linear), not as sRGB. In a mask's mips plain averaging thins the leaves with
+//! distance, for the cut-off keeps only what is more than half covered; each mip's alpha is therefore scaled until
+//! as many of its texels pass the cut-off as in the first (Castaño, "Computing alpha mipmaps", 2010).
+
+/// A texture of 8-bit RGBA with mips down to one texel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TextureData {
+    /// Width of the first mip, texels, a power of two.
+    pub width: u32,
+    /// Height of the first mip, texels, a power of two.
+    pub height: u32,
+    /// Rows of RGBA from the top, one `Vec` per mip.
+    pub mips: Vec<Vec<u8>>,
+    /// Whether the colour channels are sRGB (colours) or linear (normals).
+    pub srgb: bool,
+}
+
+/// Alpha above which a texel of a mask is drawn.
+pub const MASK_CUT_OFF: f32 = 0.5;
+
+/// An image in linear floats, before it is a texture.
+#[derive(Clone, Debug)]
+pub(super) struct Canvas {
+    pub width: usize,
+    pub height: usize,
+    /// Linear red, green, blue and alpha, 0..1 (normals: -1..1).
+    pub texels: Vec<[f32; 4]>,
+}
+
+impl Canvas {
+    /// A canvas of `size` x `size` texels of one colour.
+    pub(super) fn filled(size: usize, texel: [f32; 4]) -> Self {
+        Self { width: size, height: size, texels: vec![texel; size * size] }
+    }
+
+    /// Half the size: each texel the mean of four, colours weighted by `weight` of each texel.
+    fn halved(&self, weight: impl Fn(&[f32; 4]) -> f32) -> Self {
+        let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
+        let mut texels = Vec::with_capacity(width * height);
+        for y in 0..height {
+            for x in 0..width {
+                texels.push(self.mean_of_four(2 * x, 2 * y, &weight));
+            }
+        }
+        Self { width, height, texels }
+    }
+
+    fn mean_of_four(&self, x: usize, y: usize, weight: impl Fn(&[f32; 4]) -> f32) -> [f32; 4] {
+        let (right, below) = ((x + 1).min(self.width - 1), (y + 1).min(self.height - 1));
+        let mut sum = [0.0; 4];
+        let mut weights = 0.0;
+        for (x, y) in [(x, y), (right, y), (x, below), (right, below)] {
+            let texel = &self.texels[y * self.width + x];
+            let weight = weight(texel);
+            (0..3).for_each(|channel| sum[channel] += weight * texel[channel]);
+            sum[3] += 0.25 * texel[3];
+            weights += weight;
+        }
+        [sum[0] / weights, sum[1] / weights, sum[2] / weights, sum[3]]
+    }
+
+    /// Share of texels that pass the cut-off when alpha is scaled.
+    fn coverage(&self, scale: f32) -> f32 {
+        let drawn = self.texels.iter().filter(|texel| texel[3] * scale > MASK_CUT_OFF).count();
+        drawn as f32 / self.texels.len() as f32
+    }
+
+    fn scale_alpha_to(&mut self, coverage: f32) {
+        let (mut low, mut high) = (0.25_f32, 16.0_f32);
+        for _ in 0..24 {
+            let middle = 0.5 * (low + high);
+            if self.coverage(middle) < coverage { low = middle } else { high = middle }
+        }
+        let scale = 0.5 * (low + high);
+        self.texels.iter_mut().for_each(|texel| texel[3] = (texel[3] * scale).min(1.0));
+    }
+
+    /// Half the size, for what was painted at twice the resolution; colour comes from what is covered.
+    pub(super) fn downsampled(&self) -> Self {
+        self.halved(|texel| texel[3] + 1e-4)
+    }
+
+    /// Opaque colours.
+    pub(super) fn into_colour_texture(self) -> TextureData {
+        self.into_texture(|canvas| canvas.halved(|_| 1.0), colour_bytes, true)
+    }
+
+    /// Colours with a mask whose coverage stays the same in every mip.
+    pub(super) fn into_mask_texture(self) -> TextureData {
+        let coverage = self.coverage(1.0);
+        let shrink = |canvas: &Self| {
+            let mut half = canvas.downsampled();
+            half.scale_alpha_to(coverage);
+            half
+        };
+        self.into_texture(shrink, colour_bytes, true)
+    }
+
+    /// Unit normals in tangent space.
+    pub(super) fn into_normal_texture(self) -> TextureData {
+        self.into_texture(|canvas| canvas.halved(|_| 1.0), normal_bytes, false)
+    }
+
+    fn into_texture(
+        self,
+        shrink: impl Fn(&Self) -> Self,
+        bytes: fn(&[f32; 4]) -> [u8; 4],
+        srgb: bool,
+    ) -> TextureData {
+        let (width, height) = (self.width as u32, self.height as u32);
+        let mut mips = Vec::new();
+        let mut canvas = self;
+        loop {
+            mips.push(canvas.texels.iter().flat_map(bytes).collect());
+            if canvas.width * canvas.height <= 1 {
+                break;
+            }
+            canvas = shrink(&canvas);
+        }
+        TextureData { width, height, mips, srgb }
+    }
+}
+
+fn colour_bytes(texel: &[f32; 4]) -> [u8; 4] {
+    [srgb_byte(texel[0]), srgb_byte(texel[1]), srgb_byte(texel[2]), byte(texel[3])]
+}
+
+fn normal_bytes(texel: &[f32; 4]) -> [u8; 4] {
+    let length = (texel[0] * texel[0] + texel[1] * texel[1] + texel[2] * texel[2]).sqrt().max(1e-6);
+    let channel = |value: f32| byte(0.5 + 0.5 * value / length);
+    [channel(texel[0]), channel(texel[1]), channel(texel[2]), 255]
+}
+
+fn byte(value: f32) -> u8 {
+    (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
+}
+
+/// The sRGB transfer function (IEC 61966-2-1).
+fn srgb_byte(linear: f32) -> u8 {
+    byte(if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 })
+}
+
+/// An sRGB colour as light.
+pub(super) fn linear(srgb: [f32; 3]) -> [f32; 3] {
+    srgb.map(|value| if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) })
+}
