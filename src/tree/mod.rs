@@ -13,3 +13,6 @@ pub mod skeleton;
 pub mod species;
 pub mod texture;
 mod tube;
+
+#[cfg(test)]
+mod tests;
