@@ -1,1 +1,52 @@
-fn main() {}
+//! How long a tree takes: growing, meshing, painting.
+
+use std::hint::black_box;
+
+use bevy_windwood::tree::{
+    bark::bark_textures, leaf_mesh::leaves, leaf_texture::leaf_texture, mesh::wood, skeleton::grow, species::Species,
+};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+
+fn oak() -> Species {
+    Species::from_ron(include_str!("../assets/species/oak.species.ron")).expect("the shipped oak is valid")
+}
+
+fn growth(criterion: &mut Criterion) {
+    let oak = oak();
+    criterion.bench_function("grow/oak", |bencher| bencher.iter(|| grow(black_box(&oak), 1)));
+}
+
+/// Grows and meshes as many oaks as make 50,000 vertices.
+fn meshes(criterion: &mut Criterion) {
+    let oak = oak();
+    let vertices = |seed| {
+        let skeleton = grow(&oak, seed);
+        wood(&oak, &skeleton).positions.len() + leaves(&oak, &skeleton).positions.len()
+    };
+    let mut total = 0;
+    let seeds: Vec<u64> = (1..)
+        .take_while(|&seed| {
+            let wanted = total < 50_000;
+            total += if wanted { vertices(seed) } else { 0 };
+            wanted
+        })
+        .collect();
+    let mut group = criterion.benchmark_group("mesh");
+    group.throughput(Throughput::Elements(total as u64));
+    group.bench_function("oak_50k_vertices", |bencher| {
+        bencher.iter(|| seeds.iter().map(|&seed| black_box(vertices(seed))).sum::<usize>());
+    });
+    group.finish();
+}
+
+fn textures(criterion: &mut Criterion) {
+    let oak = oak();
+    let mut group = criterion.benchmark_group("texture");
+    group.sample_size(20);
+    group.bench_function("bark", |bencher| bencher.iter(|| bark_textures(black_box(&oak.wood.bark), 1)));
+    group.bench_function("leaf", |bencher| bencher.iter(|| leaf_texture(black_box(&oak.foliage), 1)));
+    group.finish();
+}
+
+criterion_group!(benches, growth, meshes, textures);
+criterion_main!(benches);

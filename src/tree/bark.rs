@@ -178,13 +178,13 @@ impl Surface<'_> {
         (second - nearest, tone)
     }
 
-    /// Gradient noise of whole periods over the tile, about -1..1.
+    /// Gradient noise of whole periods over the tile, about -1..1; `uv` within 0..1.
     fn noise(&self, uv: Vec2, columns: i32, rows: i32, salt: u32) -> f32 {
         let point = uv * Vec2::new(columns as f32, rows as f32);
         let home = point.floor();
         let within = point - home;
         let corner = |dx: i32, dy: i32| {
-            let (x, y) = ((home.x as i32 + dx).rem_euclid(columns), (home.y as i32 + dy).rem_euclid(rows));
+            let (x, y) = (wrapped(home.x as i32 + dx, columns), wrapped(home.y as i32 + dy, rows));
             gradient(self.hash(x, y, salt)).dot(within - Vec2::new(dx as f32, dy as f32))
         };
         let fade = within * within * (Vec2::splat(3.0) - 2.0 * within);
@@ -218,6 +218,11 @@ fn gradient(hash: u32) -> Vec2 {
     }
 }
 
+/// The lattice point past the last is the first again.
+fn wrapped(index: i32, count: i32) -> i32 {
+    if index >= count { index - count } else { index }
+}
+
 /// The low bits as a share of one.
 fn unit(hash: u32) -> f32 {
     (hash & 0xffff) as f32 / 65_536.0
@@ -230,4 +235,51 @@ fn smoothstep(low: f32, high: f32, value: f32) -> f32 {
 
 fn mix(from: [f32; 3], to: [f32; 3], share: f32) -> [f32; 3] {
     std::array::from_fn(|channel| from[channel] + (to[channel] - from[channel]) * share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Mean difference of the colours of two columns (or rows) of texels, 0..255.
+    fn difference(texture: &TextureData, first: impl Fn(usize) -> usize, second: impl Fn(usize) -> usize) -> f32 {
+        let texel = |index: usize| &texture.mips[0][4 * index..4 * index + 3];
+        let apart = |k: usize| -> f32 {
+            texel(first(k)).iter().zip(texel(second(k))).map(|(&a, &b)| f32::from(a.abs_diff(b))).sum()
+        };
+        (0..SIZE).map(apart).sum::<f32>() / (3 * SIZE) as f32
+    }
+
+    #[test]
+    fn bark_tiles_without_a_seam() {
+        let textures = bark_textures(&Bark::default(), 3);
+        for texture in [&textures.base_colour, &textures.normal] {
+            let column = |x: usize| move |y: usize| y * SIZE + x;
+            let row = |y: usize| move |x: usize| y * SIZE + x;
+            let across_seam = difference(texture, column(SIZE - 1), column(0));
+            let inside: f32 = (1..9).map(|k| difference(texture, column(50 * k), column(50 * k + 1))).sum::<f32>() / 8.0;
+            // A seam would differ like strangers, several times as much as neighbours do.
+            assert!(across_seam < 1.7 * inside, "{across_seam} across the seam, {inside} inside");
+            let across_seam = difference(texture, row(SIZE - 1), row(0));
+            let inside: f32 = (1..9).map(|k| difference(texture, row(50 * k), row(50 * k + 1))).sum::<f32>() / 8.0;
+            assert!(across_seam < 1.7 * inside, "{across_seam} across the seam, {inside} inside");
+        }
+    }
+
+    #[test]
+    fn bark_repeats_for_its_seed_only() {
+        let bark = Bark { plates_around: 5, ..Bark::default() };
+        assert_eq!(bark_textures(&bark, 1), bark_textures(&bark, 1));
+        assert_ne!(bark_textures(&bark, 1), bark_textures(&bark, 2));
+    }
+
+    #[test]
+    fn extreme_barks_are_painted_too() {
+        for plates in [1, 32] {
+            let bark =
+                Bark { plates_around: plates, plates_along: plates, winding: 2.0, depth: 1.0, ..Bark::default() };
+            bark.validate().unwrap();
+            assert_eq!(bark_textures(&bark, 9).normal.mips[0].len(), 4 * SIZE * SIZE);
+        }
+    }
 }

@@ -23,7 +23,7 @@ pub const CLUSTERS_LIMIT: usize = 16_384;
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Foliage {
-    /// First order of branches that carries leaves, 0 to 5.
+    /// First order of branches that carries leaves along it (lower ones do at their tips), 0 to 5.
     pub first_order: u8,
     /// Where on such a branch the first spray sits, as a share of its first beam: 0 to 1.
     pub first_at: f32,
@@ -143,11 +143,12 @@ pub(super) fn place(
         // A branch has a tone of its own, close to that of the branch it grows on.
         let own_tone: f32 = random.random();
         tones[index] = beam.parent.map_or(0.5, |parent| 0.6 * tones[parent as usize] + 0.4 * own_tone);
-        if beam.order < foliage.first_order {
-            continue;
-        }
         let continues = beam.attach >= 1.0 && beam.parent.is_some_and(|p| beams[p as usize].order == beam.order);
-        let first_at = if continues { 0.0 } else { foliage.first_at };
+        let first_at = match (beam.order < foliage.first_order, continues) {
+            (true, _) => 1.0,
+            (false, true) => 0.0,
+            (false, false) => foliage.first_at,
+        };
         let twig = Twig { foliage, beam, index: index as u32, envelope, tone: tones[index] };
         twig.hang(first_at, continuations[index].is_none(), &mut clusters, random);
         if clusters.len() >= CLUSTERS_LIMIT {
@@ -183,6 +184,12 @@ impl Twig<'_> {
         }
     }
 
+    /// Sprays are smaller where the crown is narrow, so that a fir comes to a point.
+    fn size_m(&self, anchor: Vec3) -> f32 {
+        let size_m = self.foliage.size_m;
+        size_m.min(LEAST_SIZE_SHARE * size_m + 0.7 * self.envelope.girth_m(anchor.y))
+    }
+
     fn spray(&self, at: f32, angle_rad: f32, roll_rad: f32, random: &mut impl Rng) -> LeafCluster {
         let anchor = self.beam.path(at);
         let outward = self.envelope.outward(anchor);
@@ -195,13 +202,16 @@ impl Twig<'_> {
             anchor,
             axis,
             normal: face.reject_from_normalized(axis).try_normalize().unwrap_or(axis.any_orthonormal_vector()),
-            size_m: self.foliage.size_m * (1.0 + self.foliage.size_spread * random.random_range(-1.0..1.0)),
+            size_m: self.size_m(anchor) * (1.0 + self.foliage.size_spread * random.random_range(-1.0..1.0)),
             phase: random.random(),
             depth: self.envelope.depth(anchor),
             tint: 0.6 * self.tone + 0.4 * random.random::<f32>(),
         }
     }
 }
+
+/// A spray keeps this share of its size where the crown is narrowest.
+const LEAST_SIZE_SHARE: f32 = 0.4;
 
 /// Uniform on the unit sphere (Archimedes).
 fn unit(random: &mut impl Rng) -> Vec3 {

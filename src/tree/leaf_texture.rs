@@ -127,7 +127,7 @@ struct Blade {
 
 /// The main shoot and its side shoots, left and right by turns, as long as the square allows.
 fn shoots(leaf: &Leaf, random: &mut Xoshiro256PlusPlus) -> Vec<Shoot> {
-    let reach = 1.0 - 0.85 * leaf.length;
+    let reach = 0.96 - 0.85 * leaf.length;
     let mut shoots = vec![Shoot { root: Vec2::ZERO, tip: Vec2::new(reach, 0.0), radius: 0.0065 }];
     for index in 0..leaf.shoots {
         let share = (index as f32 + random.random_range(0.3..0.7)) / leaf.shoots as f32;
@@ -136,22 +136,23 @@ fn shoots(leaf: &Leaf, random: &mut Xoshiro256PlusPlus) -> Vec<Shoot> {
         let angle = SHOOT_ANGLE_RAD * random.random_range(0.85..1.1);
         let direction = Vec2::new(angle.cos(), side * angle.sin());
         let room = (room(root, direction) - 0.85 * leaf.length).max(0.25 * leaf.length);
-        let length = room * random.random_range(0.75..1.0);
+        let length = room * random.random_range(0.6_f32..1.0).sqrt();
         shoots.push(Shoot { root, tip: root + direction * length, radius: 0.004 });
     }
     shoots
 }
 
-/// Distance from `root` along `direction` to the edge of the square.
+/// Distance from `root` along `direction` to the outline of the spray, to within a step.
 fn room(root: Vec2, direction: Vec2) -> f32 {
-    let sideways = direction.y.abs();
-    let to_far_edge = (1.0 - root.x - root.y.abs()) / (sideways + direction.x).max(1e-3);
-    let to_near_edge = (root.x - root.y.abs()) / (sideways - direction.x).max(1e-3);
-    to_far_edge.min(to_near_edge).max(0.0)
+    const STEP: f32 = 0.01;
+    (1..100).map(|step| STEP * step as f32).take_while(|&far| inside(root + direction * far)).last().unwrap_or(0.0)
 }
 
+/// Whether a point lies in the spray's outline: the square, its far corners rounded off, for sprays are no diamonds.
 fn inside(point: Vec2) -> bool {
-    point.y.abs() < point.x.min(1.0 - point.x) - MARGIN
+    let in_square = point.y.abs() < point.x.min(1.0 - point.x) - MARGIN;
+    let rounded = (point - Vec2::new(0.5, 0.0)) / Vec2::new(0.47, 0.42);
+    in_square && (point.x < 0.3 || rounded.length_squared() < 1.0)
 }
 
 impl Shoot {
@@ -293,4 +294,54 @@ fn lobe_wave(slanted: f32) -> f32 {
 
 fn mix(from: [f32; 3], to: [f32; 3], share: f32) -> [f32; 3] {
     std::array::from_fn(|channel| from[channel] + (to[channel] - from[channel]) * share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tree::texture::MASK_CUT_OFF;
+
+    fn drawn_share(mip: &[u8]) -> f32 {
+        let drawn = mip.chunks_exact(4).filter(|texel| f32::from(texel[3]) / 255.0 > MASK_CUT_OFF).count();
+        drawn as f32 / (mip.len() / 4) as f32
+    }
+
+    fn foliage(shape: LeafShape) -> Foliage {
+        let leaf = match shape {
+            LeafShape::Needle => Leaf { shape, length: 0.06, width: 0.1, shoots: 20, spacing: 0.15, ..Leaf::default() },
+            LeafShape::Lobed | LeafShape::Oval => Leaf { shape, ..Leaf::default() },
+        };
+        Foliage { leaf, ..Foliage::default() }
+    }
+
+    #[test]
+    fn distance_does_not_thin_the_leaves() {
+        for shape in [LeafShape::Lobed, LeafShape::Oval, LeafShape::Needle] {
+            let texture = leaf_texture(&foliage(shape), 4);
+            let full = drawn_share(&texture.mips[0]);
+            assert!((0.2..0.85).contains(&full), "{shape:?}: {full} of the card is leaf");
+            // Down to 16 x 16 texels, of which one is 0.4%.
+            for mip in &texture.mips[1..6] {
+                assert!((drawn_share(mip) - full).abs() < 0.03, "{shape:?}: {} against {full}", drawn_share(mip));
+            }
+        }
+    }
+
+    #[test]
+    fn no_leaf_is_cut_by_the_square_except_the_twig_at_its_root() {
+        let texture = leaf_texture(&foliage(LeafShape::Lobed), 4);
+        let drawn = |x: usize, y: usize| texture.mips[0][4 * (y * SIZE + x) + 3] > 127;
+        let edge = (0..SIZE).flat_map(|k| [(k, 0), (SIZE - 1, k), (0, k), (k, SIZE - 1)]);
+        let cut = edge.filter(|&(x, y)| drawn(x, y) && !(x < 12 && y > SIZE - 12)).count();
+        assert_eq!(cut, 0);
+    }
+
+    #[test]
+    fn extreme_leaves_are_painted_too() {
+        for (length, shoots, spacing) in [(0.6, 0, 2.0), (0.01, 40, 0.3)] {
+            let leaf = Leaf { length, shoots, spacing, ..Leaf::default() };
+            leaf.validate().unwrap();
+            assert_eq!(leaf_texture(&Foliage { leaf, ..Foliage::default() }, 1).mips.len(), 10);
+        }
+    }
 }

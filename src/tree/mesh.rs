@@ -11,7 +11,7 @@ use super::{
     growth::{Growth, reeves::Trunk},
     skeleton::{Skeleton, SkeletonBeam},
     species::Species,
-    tube::{Ring, Tube},
+    tube::{Ring, Tube, inradius},
 };
 
 /// Vertices of the wood, ready for a mesh of triangles, counter-clockwise from outside.
@@ -108,7 +108,7 @@ impl Branch<'_> {
             let mut ring = ring(beam, 0, s.max(0.0));
             ring.centre = beam.path(s.max(0.0)) + beam.direction * at_m.min(0.0);
             ring.radius_m *= 1.0 + flare;
-            ring.lobes = (trunk.buttresses, 0.45 * flare / (1.0 + flare));
+            ring.lobes = (trunk.buttresses, 0.6 * flare / (1.0 + flare));
             push(ring);
             covered = s.max(0.0);
         }
@@ -121,7 +121,7 @@ impl Branch<'_> {
         let beam = &self.skeleton.beams[index];
         let inside_m = parent.radius_m(beam.attach);
         let mut root = ring(beam, index, 0.0);
-        root.radius_m = (root.radius_m * COLLAR_SWELLING).min(0.8 * inside_m);
+        root.radius_m = (root.radius_m * COLLAR_SWELLING).min(0.95 * inside_m * inradius(parent.base_radius_m));
         push(root);
 
         let slant = beam.direction.cross(parent.tangent(beam.attach)).length().max(0.4);
@@ -161,10 +161,10 @@ fn ring(beam: &SkeletonBeam, index: usize, s: f32) -> Ring {
     }
 }
 
-/// Rings a beam needs: enough that the polygon keeps within a quarter of its radius of the bowed path, and that long
-/// beams bend smoothly.
+/// Rings a beam needs: enough that the polygon keeps within a third of its radius (and 6 cm for the thinnest) of the
+/// bowed path, and that long beams bend smoothly.
 fn steps(beam: &SkeletonBeam) -> usize {
-    let tolerance_m = 0.35 * beam.base_radius_m + 0.015;
+    let tolerance_m = 0.35 * beam.base_radius_m + 0.06;
     let curved = (beam.bow.length() / tolerance_m).sqrt();
     let long = beam.length_m / LONGEST_RING_STEP_M;
     curved.max(long).ceil().clamp(1.0, 24.0) as usize

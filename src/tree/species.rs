@@ -167,3 +167,59 @@ pub(super) fn require(field: &str, value: f32, allowed: RangeInclusive<f32>) -> 
 pub(super) fn require_colour(field: &str, colour: [f32; 3]) -> Result<(), SpeciesError> {
     colour.into_iter().try_for_each(|channel| require(field, channel, 0.0..=1.0))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OAK: &str = include_str!("../../assets/species/oak.species.ron");
+    const FIR: &str = include_str!("../../assets/species/fir.species.ron");
+
+    #[test]
+    fn the_shipped_species_are_valid() {
+        assert_eq!(Species::from_ron(OAK).unwrap().name, "oak");
+        assert_eq!(Species::from_ron(FIR).unwrap().name, "fir");
+        Species::default().validate().unwrap();
+    }
+
+    #[test]
+    fn a_species_survives_writing_and_reading() {
+        let fir = Species::from_ron(FIR).unwrap();
+        let written = ron::to_string(&fir).unwrap();
+        // Written without the extension, a variant's struct keeps its own parentheses.
+        let read: Species = ron::from_str(&written).unwrap();
+        assert_eq!(read, fir);
+    }
+
+    #[test]
+    fn a_value_out_of_range_is_named_with_its_path() {
+        let broken = OAK.replace("height_m: 8.5", "height_m: -3.0");
+        let error = Species::from_ron(&broken).unwrap_err();
+        assert_eq!(error.to_string(), "`growth.trunk.height_m` is -3, but must be 0.5 to 17.5");
+    }
+
+    #[test]
+    fn a_value_in_a_list_is_named_with_its_index() {
+        let mut species = Species::default();
+        let Growth::ReevesBlau(growth) = &mut species.growth;
+        growth.orders[1].spacing_m = f32::NAN;
+        let error = species.validate().unwrap_err().to_string();
+        assert!(error.starts_with("`growth.orders[1].spacing_m` is NaN"), "{error}");
+    }
+
+    #[test]
+    fn too_many_variants_are_refused() {
+        let species = Species { variants: 17, ..Species::default() };
+        assert_eq!(species.validate().unwrap_err().to_string(), "`variants` is 17, but must be 1 to 16");
+    }
+
+    #[test]
+    fn a_misspelt_field_is_found_by_line_and_name() {
+        let Err(SpeciesError::Syntax { line, message, .. }) = Species::from_ron("(\n  name: \"oak\",\n  wod: (),\n)")
+        else {
+            panic!("an unknown field must be a syntax error")
+        };
+        assert_eq!(line, 3);
+        assert!(message.contains("wod"), "{message}");
+    }
+}

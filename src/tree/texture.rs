@@ -20,6 +20,9 @@ pub struct TextureData {
 /// Alpha above which a texel of a mask is drawn.
 pub const MASK_CUT_OFF: f32 = 0.5;
 
+/// A little more than half a step of an 8-bit channel: what keeps a value above the cut-off when it is rounded.
+const HALF_A_STEP: f32 = 0.6 / 255.0;
+
 /// An image in linear floats, before it is a texture.
 #[derive(Clone, Debug)]
 pub(super) struct Canvas {
@@ -61,19 +64,19 @@ impl Canvas {
         [sum[0] / weights, sum[1] / weights, sum[2] / weights, sum[3]]
     }
 
-    /// Share of texels that pass the cut-off when alpha is scaled.
-    fn coverage(&self, scale: f32) -> f32 {
-        let drawn = self.texels.iter().filter(|texel| texel[3] * scale > MASK_CUT_OFF).count();
+    /// Share of texels that pass the cut-off.
+    fn coverage(&self) -> f32 {
+        let drawn = self.texels.iter().filter(|texel| texel[3] > MASK_CUT_OFF).count();
         drawn as f32 / self.texels.len() as f32
     }
 
+    /// Scales alpha so that the given share of texels passes the cut-off: the faintest of them lands just on it.
     fn scale_alpha_to(&mut self, coverage: f32) {
-        let (mut low, mut high) = (0.25_f32, 16.0_f32);
-        for _ in 0..24 {
-            let middle = 0.5 * (low + high);
-            if self.coverage(middle) < coverage { low = middle } else { high = middle }
-        }
-        let scale = 0.5 * (low + high);
+        let mut alphas: Vec<f32> = self.texels.iter().map(|texel| texel[3]).collect();
+        let drawn = (coverage * alphas.len() as f32).round() as usize;
+        let Some(last) = drawn.checked_sub(1) else { return };
+        let (_, &mut faintest, _) = alphas.select_nth_unstable_by(last, |a, b| b.total_cmp(a));
+        let scale = (MASK_CUT_OFF + HALF_A_STEP) / faintest.max(1e-3);
         self.texels.iter_mut().for_each(|texel| texel[3] = (texel[3] * scale).min(1.0));
     }
 
@@ -89,7 +92,7 @@ impl Canvas {
 
     /// Colours with a mask whose coverage stays the same in every mip.
     pub(super) fn into_mask_texture(self) -> TextureData {
-        let coverage = self.coverage(1.0);
+        let coverage = self.coverage();
         let shrink = |canvas: &Self| {
             let mut half = canvas.downsampled();
             half.scale_alpha_to(coverage);
@@ -145,4 +148,72 @@ fn srgb_byte(linear: f32) -> u8 {
 /// An sRGB colour as light.
 pub(super) fn linear(srgb: [f32; 3]) -> [f32; 3] {
     srgb.map(|value| if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Discs on a clear ground: a mask that thins fast when it is merely averaged.
+    fn spots() -> Canvas {
+        let mut canvas = Canvas::filled(256, [0.1, 0.3, 0.05, 0.0]);
+        for index in 0..canvas.texels.len() {
+            let (x, y) = ((index % 256 % 16) as f32 - 8.0, (index / 256 % 16) as f32 - 8.0);
+            canvas.texels[index][3] = if x.hypot(y) < 3.5 { 1.0 } else { 0.0 };
+        }
+        canvas
+    }
+
+    fn drawn_share(mip: &[u8]) -> f32 {
+        let drawn = mip.chunks_exact(4).filter(|texel| f32::from(texel[3]) / 255.0 > MASK_CUT_OFF).count();
+        drawn as f32 / (mip.len() / 4) as f32
+    }
+
+    #[test]
+    fn mips_run_down_to_one_texel() {
+        let texture = spots().into_colour_texture();
+        let sizes: Vec<usize> = texture.mips.iter().map(|mip| mip.len() / 4).collect();
+        assert_eq!(sizes, [65_536, 16_384, 4096, 1024, 256, 64, 16, 4, 1]);
+    }
+
+    #[test]
+    fn a_colour_is_the_mean_of_its_light() {
+        let mut canvas = Canvas::filled(2, [0.0, 0.0, 0.0, 1.0]);
+        canvas.texels[0] = [1.0, 1.0, 1.0, 1.0];
+        canvas.texels[3] = [1.0, 1.0, 1.0, 1.0];
+        let texture = canvas.into_colour_texture();
+        // Half the light is sRGB 188, not 128.
+        assert_eq!(texture.mips[1], [188, 188, 188, 255]);
+    }
+
+    #[test]
+    fn what_is_clear_lends_no_colour() {
+        let mut canvas = Canvas::filled(2, [1.0, 0.0, 0.0, 0.0]);
+        canvas.texels[0] = [0.0, 1.0, 0.0, 1.0];
+        let mean = canvas.downsampled().texels[0];
+        assert!(mean[1] > 0.99 && mean[0] < 0.01);
+    }
+
+    #[test]
+    fn normals_stay_unit_vectors() {
+        let mut canvas = Canvas::filled(4, [0.0, 0.0, 3.0, 1.0]);
+        canvas.texels[5] = [2.0, -1.0, 1.0, 1.0];
+        for mip in canvas.into_normal_texture().mips {
+            for texel in mip.chunks_exact(4) {
+                let length: f32 = texel[..3].iter().map(|&b| (f32::from(b) / 127.5 - 1.0).powi(2)).sum::<f32>().sqrt();
+                // Each channel is rounded to 1/255 of the range 2.
+                assert!((length - 1.0).abs() < 0.01, "{length}");
+            }
+        }
+    }
+
+    #[test]
+    fn equal_discs_cover_as_much_in_every_mip_that_can_tell() {
+        let texture = spots().into_mask_texture();
+        let full = drawn_share(&texture.mips[0]);
+        // Discs of 7 texels are still shapes at a quarter of the size; below, equal texels pass or fail together.
+        for mip in &texture.mips[1..3] {
+            assert!((drawn_share(mip) - full).abs() < 0.03, "{} against {full}", drawn_share(mip));
+        }
+    }
 }

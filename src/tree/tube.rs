@@ -152,6 +152,11 @@ struct Frame {
     light: f32,
 }
 
+/// Radius of the circle that fits into a tube of this base radius, as a share of the tube's radius.
+pub(super) fn inradius(base_radius_m: f32) -> f32 {
+    (std::f32::consts::PI / sides(base_radius_m) as f32).cos()
+}
+
 /// Sides of a tube: 3 for twigs to 16 for the thickest trunk, so that edges stay about as visible on all.
 fn sides(radius_m: f32) -> usize {
     (3.0 + 24.0 * radius_m.powf(0.8)).clamp(3.0, 16.0) as usize

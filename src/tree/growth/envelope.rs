@@ -119,6 +119,19 @@ impl Envelope {
         gradient.try_normalize().unwrap_or(Vec3::Y)
     }
 
+    /// Horizontal radius at a height, m: 0 above the top and below the base.
+    #[must_use]
+    pub fn girth_m(&self, height_m: f32) -> f32 {
+        match self.shape {
+            EnvelopeShape::Ellipsoid => {
+                let share = (height_m - self.centre().y) / self.semi_axes().y;
+                self.radius_m * (1.0 - share * share).max(0.0).sqrt()
+            }
+            EnvelopeShape::Cone if height_m < self.base_m => 0.0,
+            EnvelopeShape::Cone => (self.slope() * (self.top_m - height_m)).max(0.0),
+        }
+    }
+
     /// Middle of the crown, m.
     #[must_use]
     pub fn centre(&self) -> Vec3 {
@@ -146,4 +159,73 @@ fn smallest_positive_root(a: f32, b: f32, c: f32) -> f32 {
     }
     let root = discriminant.sqrt();
     positive((-b - root) / a).min(positive((-b + root) / a))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Slow oracle: walks along the ray and remembers the last place inside.
+    fn marched_exit_m(envelope: &Envelope, from: Vec3, direction: Vec3, step_m: f32) -> f32 {
+        let inside = |point: Vec3| match envelope.shape {
+            EnvelopeShape::Ellipsoid => ((point - envelope.centre()) / envelope.semi_axes()).length() <= 1.0,
+            EnvelopeShape::Cone => {
+                (envelope.base_m..=envelope.top_m).contains(&point.y)
+                    && point.x.hypot(point.z) <= envelope.girth_m(point.y)
+            }
+        };
+        let farthest = (4.0 * envelope.top_m.max(envelope.radius_m) / step_m) as usize;
+        let last = (0..farthest).rev().find(|&step| inside(from + direction * (step as f32 * step_m)));
+        last.map_or(0.0, |step| step as f32 * step_m)
+    }
+
+    fn shapes() -> impl Strategy<Value = EnvelopeShape> {
+        prop_oneof![Just(EnvelopeShape::Ellipsoid), Just(EnvelopeShape::Cone)]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(200))]
+
+        #[test]
+        fn rays_from_the_trunk_leave_where_a_walker_leaves(
+            shape in shapes(),
+            height in 0.0_f32..0.95,
+            azimuth in 0.0_f32..6.28,
+            elevation in -1.2_f32..1.2,
+        ) {
+            let envelope = Envelope { shape, base_m: 2.0, top_m: 14.0, radius_m: 5.0 };
+            let from = Vec3::Y * (height * envelope.top_m);
+            let (sin, cos) = elevation.sin_cos();
+            let direction = Vec3::new(cos * azimuth.cos(), sin, cos * azimuth.sin());
+            let step_m = 0.01;
+            let exit_m = envelope.exit_distance_m(from, direction);
+            let marched_m = marched_exit_m(&envelope, from, direction, step_m);
+            // The walker is late by up to a step, and may miss a corner cut by less than a step.
+            prop_assert!((exit_m - marched_m).abs() <= 3.0 * step_m, "{exit_m} against {marched_m}");
+        }
+    }
+
+    #[test]
+    fn depth_runs_from_the_surface_to_the_middle() {
+        let envelope = Envelope::default();
+        let rim = envelope.centre() + Vec3::X * envelope.radius_m;
+        assert!(envelope.depth(rim) < 1e-5);
+        assert_eq!(envelope.depth(envelope.centre()), 1.0);
+        assert_eq!(envelope.depth(rim * 3.0), 0.0);
+        let cone = Envelope { shape: EnvelopeShape::Cone, ..envelope };
+        assert_eq!(cone.depth(Vec3::Y * 5.0), 1.0);
+        assert!(cone.depth(Vec3::new(cone.girth_m(5.0), 5.0, 0.0)) < 1e-5);
+    }
+
+    #[test]
+    fn the_way_out_is_a_unit_vector_even_at_the_middle() {
+        for shape in [EnvelopeShape::Ellipsoid, EnvelopeShape::Cone] {
+            let envelope = Envelope { shape, ..Envelope::default() };
+            for point in [envelope.centre(), Vec3::ZERO, Vec3::new(3.0, 7.0, -2.0)] {
+                assert!((envelope.outward(point).length() - 1.0).abs() < 1e-5);
+            }
+        }
+    }
 }

@@ -2,8 +2,8 @@
 //! Structured Particle Systems" (SIGGRAPH 1985), section 3.1.
 //!
 //! A tree is its trunk, then order upon order of branches. Along a branch of length `l` buds sit every `spacing_m`
-//! from `first_at l` to `last_at l`, a whorl of `per_node` each; a bud grows with a probability that falls with its
-//! depth in the crown, where light is scarce. A grown bud leaves its parent at an angle that runs from `first_angle`
+//! from `first_at l` to `last_at l`, a whorl of `per_node` each; a bud grows with a probability that falls with the
+//! depth in the crown that its tip would have, where light is scarce. A grown bud leaves its parent at an angle that runs from `first_angle`
 //! to `last_angle` along the parent, turned about it by `roll` from node to node (the golden angle of phyllotaxis by
 //! default). Its length is a share of its parent's or reaches for the envelope, and never passes the envelope.
 //! A branch is a chain of `segments` beams, each turned a little at random and by its tropism.
@@ -319,7 +319,6 @@ impl<R: Rng> Grower<'_, R> {
         let (carrier, attach) = self.find(parent, along_m);
         let beam = self.beams[carrier];
         let base = beam.path(attach);
-        let light = 1.0 - self.shade_pruning * self.envelope.depth(base);
         let chance = self.random.random::<f32>();
         let share = along_m / parent.length_m.max(1e-3);
         let position = ((share - order.first_at) / (order.last_at - order.first_at).max(1e-3)).clamp(0.0, 1.0);
@@ -332,6 +331,7 @@ impl<R: Rng> Grower<'_, R> {
         let own_m = order.length * parent.length_m * (1.0 - order.taper * position);
         let room_m = order.reach * self.envelope.exit_distance_m(base, direction);
         let length_m = own_m.min(room_m) * (1.0 - order.length_spread * self.random.random::<f32>());
+        let light = 1.0 - self.shade_pruning * self.envelope.depth(base + direction * length_m);
         if chance >= order.probability * light || length_m < SHORTEST_BEAM_M {
             return None;
         }

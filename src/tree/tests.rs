@@ -1,0 +1,221 @@
+//! What must hold of every tree, whatever its species: tried on random species and on the shipped ones.
+
+use std::collections::HashMap;
+
+use bevy::math::Vec3;
+use proptest::prelude::*;
+
+use super::{
+    foliage::{CLUSTERS_LIMIT, Foliage},
+    growth::{
+        Growth,
+        envelope::{Envelope, EnvelopeShape},
+        reeves::{BEAMS_LIMIT, BranchOrder, ReevesBlau, Trunk},
+    },
+    leaf_mesh::leaves,
+    mesh::{WoodVertices, wood},
+    skeleton::{Skeleton, grow},
+    species::Species,
+};
+
+fn oak() -> Species {
+    Species::from_ron(include_str!("../../assets/species/oak.species.ron")).unwrap()
+}
+
+fn fir() -> Species {
+    Species::from_ron(include_str!("../../assets/species/fir.species.ron")).unwrap()
+}
+
+fn orders() -> impl Strategy<Value = BranchOrder> {
+    let places = (0.0_f32..0.6, 0.6_f32..=1.0, 0.2_f32..3.0, 0.0_f32..=1.0, 1_u32..6);
+    let angles = (0.0_f32..150.0, 0.0_f32..150.0, 0.0_f32..60.0, -360.0_f32..360.0, 0.0_f32..180.0);
+    let lengths = (0.02_f32..3.0, 0.0_f32..=1.0, 0.0_f32..=1.0, 0.05_f32..=1.0, 0.0_f32..3.0);
+    let habit = (1_u32..=6, 0.0_f32..60.0, -2.0_f32..2.0, -0.3_f32..0.3, 0.0_f32..=1.0);
+    (places, angles, lengths, habit).prop_map(|(places, angles, lengths, habit)| BranchOrder {
+        first_at: places.0,
+        last_at: places.1,
+        spacing_m: places.2,
+        spacing_spread: places.3,
+        per_node: places.4,
+        first_angle_deg: angles.0,
+        last_angle_deg: angles.1,
+        angle_spread_deg: angles.2,
+        roll_deg: angles.3,
+        roll_spread_deg: angles.4,
+        length: lengths.0,
+        taper: lengths.1,
+        length_spread: lengths.2,
+        reach: lengths.3,
+        light_seeking: lengths.4,
+        segments: habit.0,
+        crook_deg: habit.1,
+        rise: habit.2,
+        sag: habit.3,
+        probability: habit.4,
+    })
+}
+
+prop_compose! {
+    fn species()(
+        cone in any::<bool>(),
+        (top_m, low, radius_m) in (0.5_f32..60.0, 0.0_f32..0.9, 0.1_f32..30.0),
+        (height, trunk_radius_m, segments) in (0.1_f32..=1.0, 0.01_f32..2.0, 1_u32..=6),
+        (lean_deg, crook_deg, buttresses) in (0.0_f32..30.0, 0.0_f32..45.0, 0_u32..=9),
+        orders in prop::collection::vec(orders(), 0..=3),
+        (size_spread, shade_pruning, pipe_exponent) in (0.0_f32..0.8, 0.0_f32..=1.0, 1.5_f32..4.0),
+        (first_order, spacing_m, size_m, droop) in (0_u8..=3, 0.05_f32..2.0, 0.05_f32..2.0, -2.0_f32..2.0),
+    ) -> Species {
+        let shape = if cone { EnvelopeShape::Cone } else { EnvelopeShape::Ellipsoid };
+        let height_m = (height * top_m).max(0.5);
+        Species {
+            growth: Growth::ReevesBlau(ReevesBlau {
+                envelope: Envelope { shape, base_m: low * top_m, top_m, radius_m },
+                trunk: Trunk {
+                    height_m, radius_m: trunk_radius_m, segments, lean_deg, crook_deg, buttresses, ..Trunk::default()
+                },
+                orders, size_spread, shade_pruning, pipe_exponent,
+            }),
+            foliage: Foliage { first_order, spacing_m, size_m, droop, ..Foliage::default() },
+            ..Species::default()
+        }
+    }
+}
+
+/// The height that the species promises never to pass.
+fn stated_height_m(species: &Species) -> f32 {
+    let Growth::ReevesBlau(growth) = &species.growth;
+    growth.envelope.top_m
+}
+
+fn check_skeleton(species: &Species, skeleton: &Skeleton) {
+    assert!((1..=BEAMS_LIMIT + 64).contains(&skeleton.beams.len()));
+    assert!(skeleton.clusters.len() <= CLUSTERS_LIMIT);
+    for (index, beam) in skeleton.beams.iter().enumerate() {
+        assert!(beam.base.is_finite() && beam.bow.is_finite() && beam.length_m > 0.0);
+        assert!((beam.direction.length() - 1.0).abs() < 1e-4);
+        assert!((0.0..=1.0).contains(&beam.attach));
+        assert!(0.0 < beam.tip_radius_m && beam.tip_radius_m <= beam.base_radius_m);
+        // A branch may overshoot the envelope by the shortest beam there is.
+        assert!(beam.path(0.5).y.max(beam.path(1.0).y) <= stated_height_m(species) + 0.08 + 1e-3);
+        let Some(parent) = beam.parent else { continue };
+        assert!((parent as usize) < index, "parents come first");
+        let parent = &skeleton.beams[parent as usize];
+        assert!(beam.base.distance(parent.path(beam.attach)) < 1e-3, "a beam starts on its parent's path");
+        assert!(beam.base_radius_m <= parent.radius_m(beam.attach) * 1.0001, "radii never grow outward");
+        assert!(beam.order == parent.order || beam.order == parent.order + 1);
+    }
+    for cluster in &skeleton.clusters {
+        let beam = &skeleton.beams[cluster.beam as usize];
+        assert!(cluster.anchor.distance(beam.path(cluster.at)) < 1e-3);
+        assert!((cluster.axis.length() - 1.0).abs() < 1e-4 && (cluster.normal.length() - 1.0).abs() < 1e-4);
+        assert!(cluster.axis.dot(cluster.normal).abs() < 1e-3);
+        assert!([cluster.depth, cluster.tint, cluster.phase].iter().all(|share| (0.0..=1.0).contains(share)));
+    }
+}
+
+fn check_vertices(positions: &[[f32; 3]], normals: &[[f32; 3]], sway: &[[f32; 4]], indices: &[u32], beams: usize) {
+    assert!(positions.len() == normals.len() && positions.len() == sway.len());
+    assert!(positions.iter().flatten().all(|value| value.is_finite()));
+    assert!(normals.iter().all(|&normal| (Vec3::from(normal).length() - 1.0).abs() < 1e-3));
+    assert!(indices.len() % 3 == 0 && indices.iter().all(|&index| (index as usize) < positions.len()));
+    for [beam, s, phase, light] in sway {
+        assert!(beam.fract() == 0.0 && (*beam as usize) < beams);
+        assert!([s, phase, light].iter().all(|share| (0.0..=1.0).contains(*share)));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    #[test]
+    fn every_valid_species_grows_a_sound_tree(species in species(), seed in any::<u64>()) {
+        species.validate().unwrap();
+        let skeleton = grow(&species, seed);
+        check_skeleton(&species, &skeleton);
+        let (wood, leaves) = (wood(&species, &skeleton), leaves(&species, &skeleton));
+        check_vertices(&wood.positions, &wood.normals, &wood.sway, &wood.indices, skeleton.beams.len());
+        check_vertices(&leaves.positions, &leaves.normals, &leaves.sway, &leaves.indices, skeleton.beams.len());
+    }
+}
+
+#[test]
+fn the_same_seed_grows_the_same_tree_and_another_seed_another() {
+    let oak = oak();
+    assert_eq!(grow(&oak, 7), grow(&oak, 7));
+    assert_ne!(grow(&oak, 7), grow(&oak, 8));
+}
+
+#[test]
+fn the_shipped_trees_have_the_sizes_of_real_ones_and_keep_their_budget() {
+    for (species, heights, widths) in [(oak(), 12.5..18.0, 10.0..19.0), (fir(), 17.0..23.0, 4.5..8.0)] {
+        for seed in 0..6 {
+            let skeleton = grow(&species, seed);
+            let (wood, leaves) = (wood(&species, &skeleton), leaves(&species, &skeleton));
+            let vertices = wood.positions.len() + leaves.positions.len();
+            let reach = |x: &[f32; 3]| 2.0 * x[0].hypot(x[2]);
+            let width = leaves.positions.iter().map(reach).fold(0.0, f32::max);
+            let name = &species.name;
+            assert!(heights.contains(&skeleton.height_m()), "{name} {seed}: {} m", skeleton.height_m());
+            assert!(widths.contains(&width), "{name} {seed}: {width} m wide");
+            assert!((350..=750).contains(&skeleton.beams.len()), "{name} {seed}: {} beams", skeleton.beams.len());
+            assert!((8_000..=16_000).contains(&vertices), "{name} {seed}: {vertices} vertices");
+        }
+    }
+}
+
+/// Edges with a triangle on one side only, after vertices at one place are taken as one.
+fn open_edges(wood: &WoodVertices) -> Vec<[usize; 2]> {
+    let mut welded: HashMap<([u32; 3], u32), usize> = HashMap::new();
+    let first_at: Vec<usize> = (0..wood.positions.len())
+        .map(|index| {
+            let place = wood.positions[index].map(f32::to_bits);
+            *welded.entry((place, wood.sway[index][0] as u32)).or_insert(index)
+        })
+        .collect();
+    let mut sides: HashMap<[usize; 2], i32> = HashMap::new();
+    for triangle in wood.indices.chunks_exact(3) {
+        for corner in 0..3 {
+            let edge = [triangle[corner], triangle[(corner + 1) % 3]].map(|index| first_at[index as usize]);
+            let (key, direction) = if edge[0] < edge[1] { (edge, 1) } else { ([edge[1], edge[0]], -1) };
+            *sides.entry(key).or_insert(0) += direction;
+        }
+    }
+    sides.into_iter().filter(|&(_, balance)| balance != 0).map(|(edge, _)| edge).collect()
+}
+
+#[test]
+fn bark_is_open_only_inside_the_parent_and_below_the_ground() {
+    for species in [oak(), fir()] {
+        let skeleton = grow(&species, 3);
+        let wood = wood(&species, &skeleton);
+        let edges = open_edges(&wood);
+        assert!(edges.len() >= 3 * skeleton.beams.iter().filter(|beam| beam.attach < 1.0).count() / 2);
+        for index in edges.into_iter().flatten() {
+            let point = Vec3::from(wood.positions[index]);
+            let beam = &skeleton.beams[wood.sway[index][0] as usize];
+            assert_eq!(wood.sway[index][1], 0.0, "an open edge moves with its parent");
+            let Some(parent) = beam.parent else {
+                assert!(point.y < 0.0, "the trunk is open at {} m", point.y);
+                continue;
+            };
+            let parent = &skeleton.beams[parent as usize];
+            let axis = parent.tangent(beam.attach);
+            let off = (point - parent.path(beam.attach)).reject_from(axis).length();
+            assert!(off <= parent.radius_m(beam.attach), "{off} m off an axis of {} m", parent.base_radius_m);
+        }
+    }
+}
+
+#[test]
+fn a_leaf_card_hangs_at_its_anchor_along_its_axis() {
+    let species = fir();
+    let skeleton = grow(&species, 5);
+    let leaves = leaves(&species, &skeleton);
+    for (card, cluster) in skeleton.clusters.iter().enumerate() {
+        let [root, tip] = [4 * card, 4 * card + 2].map(|index| Vec3::from(leaves.positions[index]));
+        let along = (tip - root).normalize();
+        assert_eq!(root.to_array(), leaves.anchor[4 * card][..3]);
+        assert!(along.dot(cluster.axis) > 0.9999);
+        assert!((root.distance(tip) - cluster.size_m).abs() < 1e-3);
+    }
+}
