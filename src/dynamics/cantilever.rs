@@ -193,7 +193,7 @@ impl TaperedBeam {
     }
 }
 
-/// Integral over 0..1 by Gauss and Legendre's rule of five points (exact to the 9th degree) in eight panels.
+/// Integral over 0..1 by Gauss and Legendre's rule of five points (exact to the 9th degree) in sixteen panels.
 fn integrate(integrand: impl Fn(f64) -> f64) -> f64 {
     // Abramowitz & Stegun, table 25.4.
     const NODES: [(f64, f64); 5] = [
@@ -203,7 +203,7 @@ fn integrate(integrand: impl Fn(f64) -> f64) -> f64 {
         (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
         (0.906_179_845_938_664, 0.236_926_885_056_189_1),
     ];
-    const PANELS: usize = 8;
+    const PANELS: usize = 16;
     let half_panel = 0.5 / PANELS as f64;
     let panel = |index: usize| {
         let middle = (2 * index + 1) as f64 * half_panel;
