@@ -1,1 +1,186 @@
-fn main() {}
+//! What a frame pays for a branch, what it would pay without the shared table, and what a change of wind pays.
+
+use bevy::math::{Quat, Vec2, Vec3, Vec4};
+use bevy_windwood::dynamics::{
+    BeamDynamics, BeamPose, ExactStep, FrequencyClasses, LoadBasis, LoadBasisKind, NO_PARENT, Oscillator,
+    OscillatorState, ResponseTable, TreePoser,
+};
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use rand::rngs::Xoshiro256PlusPlus;
+use rand::{RngExt, SeedableRng};
+use std::hint::black_box;
+
+const BRANCHES: usize = 500;
+const SAMPLES: usize = 2048;
+const COLUMNS: usize = 16;
+const TIME_STEP_S: f32 = 1.0 / 16.0;
+
+criterion_group!(benches, pose, tables);
+criterion_main!(benches);
+
+fn pose(criterion: &mut Criterion) {
+    let columns = wind();
+    let basis = basis(&columns);
+    let classes = FrequencyClasses::default();
+    let table = ResponseTable::new(&columns, TIME_STEP_S, &basis, classes, 0.1);
+    let beams = tree();
+    let mut group = criterion.benchmark_group("pose");
+
+    group.throughput(Throughput::Elements(BRANCHES as u64));
+    group.bench_function("tree_500", |bencher| {
+        let poser = TreePoser::new(&beams, basis.map(), &classes, Quat::IDENTITY, 1.0);
+        let mut poses = vec![BeamPose::REST; BRANCHES];
+        let mut responses = vec![Vec4::ZERO; classes.count];
+        let mut tau_s = 0.0;
+        bencher.iter(|| {
+            tau_s += 1.0 / 60.0;
+            table.responses(3, tau_s, &mut responses);
+            poser.pose(&responses, &mut poses);
+            black_box(&mut poses);
+        });
+    });
+    group.bench_function("prepare_500", |bencher| {
+        let mut poser = TreePoser::default();
+        bencher.iter(|| poser.prepare(black_box(&beams), basis.map(), &classes, Quat::IDENTITY, 1.0));
+    });
+    group.bench_function("own_oscillators_500", |bencher| {
+        let mut branches: Vec<OwnOscillators> = beams.iter().map(OwnOscillators::new).collect();
+        let mut tau_s = 0.0;
+        bencher.iter(|| {
+            tau_s += 1.0 / 60.0;
+            for branch in &mut branches {
+                branch.step(&table, tau_s);
+            }
+            black_box(&mut branches);
+        });
+    });
+
+    group.throughput(Throughput::Elements(1));
+    group.bench_function("own_oscillators", |bencher| {
+        let mut branch = OwnOscillators::new(&beams[100]);
+        let mut tau_s = 0.0;
+        bencher.iter(|| {
+            tau_s += 1.0 / 60.0;
+            branch.step(&table, tau_s);
+            black_box(&mut branch);
+        });
+    });
+    group.bench_function("duhamel_branch", |bencher| {
+        let oscillator = Oscillator::new(7.0, 0.1).expect("a valid oscillator");
+        let load: Vec<f64> = columns[0].iter().map(|v| f64::from(v.length() * v.x)).collect();
+        bencher.iter(|| oscillator.duhamel_at(black_box(&load), f64::from(TIME_STEP_S), SAMPLES - 1));
+    });
+    group.finish();
+}
+
+fn tables(criterion: &mut Criterion) {
+    let columns = wind();
+    let velocities = columns.concat();
+    let basis = basis(&columns);
+    let classes = FrequencyClasses::default();
+    criterion.bench_function("load_basis/default", |bencher| {
+        bencher.iter(|| LoadBasis::new(LoadBasisKind::Principal, black_box(&velocities), drag));
+    });
+    criterion.bench_function("response_table/default", |bencher| {
+        let build = |()| ResponseTable::new(black_box(&columns), TIME_STEP_S, &basis, classes, 0.1);
+        bencher.iter_batched(|| (), build, BatchSize::PerIteration);
+    });
+}
+
+/// What a branch would carry without the shared table: its own modes 1 to 3 in both transverse directions, under the
+/// quadratic drag of the wind at its own place.
+struct OwnOscillators {
+    column: usize,
+    direction: Vec3,
+    across: [Vec3; 2],
+    steps: [ExactStep; 3],
+    shares: [f32; 3],
+    states: [OscillatorState<Vec2>; 3],
+    load: Vec2,
+}
+
+impl OwnOscillators {
+    fn new(beam: &BeamDynamics) -> Self {
+        let omega = 4.0 + f64::from(beam.length_m);
+        let first = beam.direction.any_orthonormal_vector();
+        let step =
+            |ratio: f64| ExactStep::new(Oscillator::new(omega * ratio, 0.1).expect("a valid oscillator"), 1.0 / 60.0);
+        Self {
+            column: (beam.base.x.abs() * 100.0) as usize % COLUMNS,
+            direction: beam.direction,
+            across: [first, beam.direction.cross(first)],
+            // Ratios of the cantilever's frequencies, and its loads by mass for a uniform load.
+            steps: [1.0, 6.267, 17.547].map(step),
+            shares: [1.566, -0.868, 0.509],
+            states: Default::default(),
+            load: Vec2::ZERO,
+        }
+    }
+
+    fn step(&mut self, table: &ResponseTable, tau_s: f64) {
+        let drag = drag(table.velocity(self.column, tau_s), self.direction);
+        let load = Vec2::new(drag.dot(self.across[0]), drag.dot(self.across[1]));
+        for ((state, step), share) in self.states.iter_mut().zip(&self.steps).zip(self.shares) {
+            *state = step.advance(*state, share * self.load, share * load);
+        }
+        self.load = load;
+    }
+}
+
+fn drag(velocity: Vec3, direction: Vec3) -> Vec3 {
+    let normal = velocity - velocity.dot(direction) * direction;
+    normal.length() * normal
+}
+
+fn basis(columns: &[Vec<Vec3>]) -> LoadBasis {
+    LoadBasis::new(LoadBasisKind::Principal, &columns.concat(), drag)
+}
+
+/// A periodic wind of some harmonics of random phase.
+fn wind() -> Vec<Vec<Vec3>> {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
+    let mut series = |rms: f32| -> Vec<f32> {
+        let phases: Vec<f32> = (0..40).map(|_| random.random_range(0.0..std::f32::consts::TAU)).collect();
+        let value = |time: usize| {
+            let turn = std::f32::consts::TAU * time as f32 / SAMPLES as f32;
+            let waves = phases.iter().enumerate().map(|(k, phase)| ((1 + 3 * k) as f32 * turn + phase).sin());
+            rms * waves.sum::<f32>() / 20f32.sqrt()
+        };
+        (0..SAMPLES).map(value).collect()
+    };
+    let mut column = || -> Vec<Vec3> {
+        let (along, up, across) = (series(1.6), series(0.8), series(1.0));
+        (0..SAMPLES).map(|time| Vec3::new(8.0 + along[time], up[time], across[time])).collect()
+    };
+    (0..COLUMNS).map(|_| column()).collect()
+}
+
+/// A tree of which every beam but the first rides on one of those before it.
+fn tree() -> Vec<BeamDynamics> {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(2);
+    let mut beams = vec![BeamDynamics {
+        base: Vec3::ZERO,
+        length_m: 9.0,
+        direction: Vec3::Y,
+        attach: 0.0,
+        parent: NO_PARENT,
+        gain: 0.001,
+        class: 6.0,
+    }];
+    while beams.len() < BRANCHES {
+        let parent = random.random_range(0..beams.len().div_ceil(4));
+        let attach = random.random_range(0.3..1.0f32);
+        let azimuth = random.random_range(0.0..std::f32::consts::TAU);
+        let on = &beams[parent];
+        beams.push(BeamDynamics {
+            base: on.base + on.length_m * attach * on.direction,
+            length_m: 0.6 * on.length_m,
+            direction: Vec3::new(azimuth.cos(), 0.8, azimuth.sin()).normalize(),
+            attach,
+            parent: parent as u32,
+            gain: 0.003,
+            class: random.random_range(8.0..23.0),
+        });
+    }
+    beams
+}

@@ -146,3 +146,90 @@ fn texel_direction(index: usize, size: usize) -> Vec3 {
     let place = Vec2::new((index % size) as f32, (index / size) as f32);
     direction_from_square(place * (2.0 / (size - 1) as f32) - 1.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn directions() -> impl Iterator<Item = Vec3> {
+        (0..500).map(|i| {
+            let height = (i as f32 + 0.5) / 250.0 - 1.0;
+            let azimuth = 2.4 * i as f32;
+            let radius = (1.0 - height * height).sqrt();
+            Vec3::new(radius * azimuth.cos(), height, radius * azimuth.sin())
+        })
+    }
+
+    fn any_coefficients(direction: Vec3) -> LoadCoefficients {
+        LoadCoefficients { mean: direction, moving: [Vec3::X, 2.0 * direction, Vec3::Y, Vec3::Z] }
+    }
+
+    #[test]
+    fn nearest_texel_is_near_for_a_direction_and_its_reverse() {
+        let map = DirectionMap::new(129, |_| LoadCoefficients::default());
+        for direction in directions() {
+            let texel = map.texel_direction(map.texel_index(direction));
+            // Half a texel is 1/128 of the square in u and in v; the map stretches by less than 2.5.
+            assert!(texel.cross(direction).length() < 2.5 * 2f32.sqrt() / 128.0, "{direction} found {texel}");
+            assert!(map.texel_index(direction) == map.texel_index(-direction) || direction.y == 0.0);
+        }
+    }
+
+    #[test]
+    fn every_texel_finds_itself() {
+        let map = DirectionMap::new(9, |_| LoadCoefficients::default());
+        let upward = (0..81).filter(|&index| map.texel_direction(index).y > 1e-6);
+        assert_eq!(upward.clone().count(), 81 - 32);
+        for index in upward {
+            assert_eq!(map.texel_index(map.texel_direction(index)), index);
+        }
+    }
+
+    #[test]
+    fn trunks_and_the_winds_own_direction_lie_on_centres() {
+        let map = DirectionMap::new(65, |_| LoadCoefficients::default());
+        for axis in [Vec3::Y, Vec3::NEG_Y, Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z] {
+            let texel = map.texel_direction(map.texel_index(axis));
+            assert!(texel.cross(axis).length() < 1e-6, "{axis} found {texel}");
+        }
+    }
+
+    #[test]
+    fn texel_and_coefficients_are_two_forms_of_one() {
+        let coefficients = any_coefficients(Vec3::new(0.6, 0.0, 0.8));
+        let texel = coefficients.to_texel();
+        assert_eq!([texel[3], texel[7], texel[11], texel[15]], [0.6, 0.0, 0.8, 0.0]);
+        assert_eq!(texel[4..7], [1.2, 0.0, 1.6]);
+        assert_eq!(LoadCoefficients::from_texel(&texel), coefficients);
+    }
+
+    #[test]
+    fn refining_keeps_the_texels_and_puts_means_between() {
+        let coarse = DirectionMap::new(5, any_coefficients);
+        let fine = coarse.refined();
+        assert_eq!(fine.size(), 9);
+        assert_eq!(fine.texels()[2 * 9 + 4], coarse.texels()[5 + 2]);
+        let between = (coarse.texels()[5 + 2][3] + coarse.texels()[5 + 3][3]) / 2.0;
+        assert!((fine.texels()[2 * 9 + 5][3] - between).abs() < 1e-7);
+    }
+
+    #[test]
+    fn loads_along_the_beam_are_left_out() {
+        let map = DirectionMap::new(9, any_coefficients);
+        for direction in directions() {
+            let coefficients = map.coefficients(direction);
+            for load in coefficients.moving.into_iter().chain([coefficients.mean]) {
+                assert!(load.dot(direction).abs() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn nonsense_directions_find_a_texel() {
+        let map = DirectionMap::new(0, |_| LoadCoefficients::default());
+        assert_eq!(map.size(), 3);
+        for direction in [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY, Vec3::new(1e30, -2e30, 0.0)] {
+            assert!(map.texel_index(direction) < 9);
+        }
+    }
+}

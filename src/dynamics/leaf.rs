@@ -80,7 +80,8 @@ fn turn_towards(rest_axis: Vec3, wind: Vec3, turned: f32) -> Quat {
 
 /// The flutter in full wind, as a rotation vector.
 fn flutter_vector(response: &LeafResponse, rest_axis: Vec3, time_s: f32, period_s: f32, phase: f32) -> Vec3 {
-    let periods = if period_s > 0.0 { (time_s / period_s).fract() } else { 0.0 };
+    let period_s = if period_s > 0.0 && period_s.is_finite() { period_s } else { 1.0 };
+    let periods = (time_s / period_s).fract();
     let first = any_normal(rest_axis);
     let second = rest_axis.cross(first);
     let [a, b] = FLUTTER_PHASES.map(|phases| {
@@ -103,4 +104,74 @@ fn any_normal(axis: Vec3) -> Vec3 {
 fn smoothstep(start: f32, end: f32, value: f32) -> f32 {
     let t = ((value - start) / (end - start).max(f32::EPSILON)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STILL: LeafResponse = LeafResponse {
+        turn: 1.0,
+        onset_speed_m_s: 2.0,
+        full_speed_m_s: 10.0,
+        flutter_angle_rad: 0.0,
+        flutter_frequency_hz: 3.0,
+    };
+
+    #[test]
+    fn leaves_stream_with_a_full_wind() {
+        let wind = Vec3::new(8.0, -3.0, 9.0);
+        for rest in [Vec3::X, Vec3::NEG_Y, wind.normalize(), -wind.normalize()] {
+            let axis = turn(&STILL, rest, wind, 1.0, 128.0, 0.3) * rest;
+            // Rounding; PARALLEL is the most that the axis of the turn may be off.
+            assert!(axis.distance(wind.normalize()) < 2e-4, "{rest} turned to {axis}");
+        }
+    }
+
+    #[test]
+    fn leaves_turn_more_in_more_wind() {
+        let angle = |speed: f32| {
+            let axis = turn(&STILL, Vec3::Y, Vec3::X * speed, 0.0, 128.0, 0.0) * Vec3::Y;
+            axis.angle_between(Vec3::Y)
+        };
+        assert!(angle(1.9) < 1e-3);
+        // Halfway between onset and full speed the smooth step is at one half.
+        assert!((angle(6.0) - std::f32::consts::FRAC_PI_4).abs() < 1e-5);
+        assert!((2..12).all(|speed| angle(speed as f32 + 1.0) >= angle(speed as f32) - 1e-5));
+    }
+
+    #[test]
+    fn flutter_is_bounded_smooth_and_seamless() {
+        let response = LeafResponse { turn: 0.0, ..LeafResponse::default() };
+        let axis = |time_s: f32| turn(&response, Vec3::Z, Vec3::X * 20.0, time_s, 64.0, 0.37) * Vec3::Z;
+        let angles: Vec<f32> = (0..6400).map(|step| axis(step as f32 / 100.0).angle_between(Vec3::Z)).collect();
+        let greatest = angles.iter().copied().fold(0.0, f32::max);
+        assert!(greatest < 1.415 * response.flutter_angle_rad && greatest > 0.5 * response.flutter_angle_rad);
+        // The fastest sine turns by 2 pi 1.414 f a second at most, about each of two axes.
+        let rate = TAU * 1.414 * response.flutter_frequency_hz * response.flutter_angle_rad * 2f32.sqrt();
+        for step in 0..6400 {
+            let moved = axis(step as f32 / 100.0).distance(axis((step + 1) as f32 / 100.0));
+            assert!(moved < rate / 100.0 * 1.01, "{moved} at step {step}");
+        }
+        assert!(axis(0.0).distance(axis(64.0)) < 1e-4);
+    }
+
+    #[test]
+    fn leaves_of_different_phase_differ() {
+        let response = LeafResponse::default();
+        let axis = |phase| turn(&response, Vec3::Z, Vec3::X * 20.0, 3.0, 64.0, phase) * Vec3::Z;
+        assert!(axis(0.1).distance(axis(0.4)) > 0.01);
+    }
+
+    #[test]
+    fn calm_is_rest_and_nonsense_is_finite() {
+        let response = LeafResponse::default();
+        let rested = turn(&response, Vec3::Y, Vec3::ZERO, 5.0, 64.0, 0.5);
+        assert_eq!(rested, Quat::IDENTITY);
+        for wind in [Vec3::NAN, Vec3::INFINITY, Vec3::NEG_Y * 1e30, Vec3::splat(1e-30)] {
+            for period_s in [64.0, 0.0, f32::NAN] {
+                assert!(turn(&response, Vec3::Y, wind, 5.0, period_s, 0.5).is_finite());
+            }
+        }
+    }
 }

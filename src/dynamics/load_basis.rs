@@ -148,7 +148,7 @@ struct PrincipalProjection {
 impl PrincipalProjection {
     fn new(sample: &[Vec3], load: &impl Fn(Vec3, Vec3) -> Vec3) -> Self {
         let directions = hemisphere(TRAINING_DIRECTIONS);
-        let loads = standardised_loads(sample, &directions, load);
+        let loads = weighted_loads(sample, &directions, load);
         let covariance = loads.matrix.tr_mul(&loads.matrix) / sample.len().max(1) as f64;
         let functionals = leading_functionals(covariance);
         let weights: Vec<[Vec4; 3]> = loads
@@ -175,16 +175,18 @@ fn project(weights: &[[Vec4; 3]], loads: impl Iterator<Item = Vec3>) -> Vec4 {
 }
 
 /// The moving loads of the training directions, one row a sample, three columns a direction.
-struct StandardisedLoads {
+struct WeightedLoads {
     matrix: DMatrix<f64>,
     /// What each direction's load was multiplied by.
     scales: Vec<f64>,
     means: Vec<Vec3>,
 }
 
-/// Beams nearly along the mean wind carry little load, and the relative error of theirs would be great if all loads
-/// counted in proportion to their variance: so each direction's load is divided by its standard deviation.
-fn standardised_loads(sample: &[Vec3], directions: &[Vec3], load: &impl Fn(Vec3, Vec3) -> Vec3) -> StandardisedLoads {
+/// Beams nearly along the mean wind carry little load, and if all loads counted in proportion to their variance, the
+/// relative error of theirs would be great. Each direction's load is divided by the root of its standard deviation:
+/// at a turbulence intensity of 0.2 that leaves a median error of 2.9% and a 95th percentile of 18.5%; the loads as they
+/// are leave 2.7% and 19.5%, and those of unit deviation 3.5% and 18.2%.
+fn weighted_loads(sample: &[Vec3], directions: &[Vec3], load: &impl Fn(Vec3, Vec3) -> Vec3) -> WeightedLoads {
     let mut matrix = DMatrix::zeros(sample.len(), 3 * directions.len());
     let mut scales = Vec::with_capacity(directions.len());
     let mut means = Vec::with_capacity(directions.len());
@@ -193,7 +195,7 @@ fn standardised_loads(sample: &[Vec3], directions: &[Vec3], load: &impl Fn(Vec3,
         let mean = mean(loads.iter().copied());
         let variance =
             loads.iter().map(|&q| f64::from((q - mean).length_squared())).sum::<f64>() / sample.len().max(1) as f64;
-        let scale = if variance > 0.0 { variance.sqrt().recip() } else { 0.0 };
+        let scale = if variance > 0.0 { variance.powf(-0.25) } else { 0.0 };
         for (row, &q) in loads.iter().enumerate() {
             for axis in 0..3 {
                 matrix[(row, 3 * d + axis)] = f64::from(q[axis] - mean[axis]) * scale;
@@ -202,7 +204,7 @@ fn standardised_loads(sample: &[Vec3], directions: &[Vec3], load: &impl Fn(Vec3,
         scales.push(scale);
         means.push(mean);
     }
-    StandardisedLoads { matrix, scales, means }
+    WeightedLoads { matrix, scales, means }
 }
 
 /// The four eigenvectors of greatest variance, divided by their standard deviation; zero where there is no variance.
@@ -264,3 +266,6 @@ fn mean(values: impl ExactSizeIterator<Item = Vec3>) -> Vec3 {
 fn finite_or_zero(value: Vec3) -> Vec3 {
     if value.is_finite() { value } else { Vec3::ZERO }
 }
+
+#[cfg(test)]
+mod tests;

@@ -17,14 +17,18 @@
 //! Lengths are in metres, times in seconds. *Wind coordinates* are (along, up, across): along the mean wind, the world's
 //! up, and along x up.
 
+pub mod cantilever;
 pub mod direction_map;
 pub mod leaf;
 pub mod load_basis;
+pub mod oscillator;
 pub mod pose;
 pub mod response;
 
+pub use cantilever::{CantileverMode, TaperedBeam};
 pub use direction_map::{DirectionMap, LoadCoefficients};
 pub use leaf::LeafResponse;
 pub use load_basis::{BASIS_RANK, LoadBasis, LoadBasisKind};
+pub use oscillator::{ExactStep, Oscillator, OscillatorState};
 pub use pose::{BeamDynamics, BeamPose, NO_PARENT, TreePoser};
 pub use response::{FrequencyClasses, ResponseTable};

@@ -325,3 +325,6 @@ impl ReadyBeam {
         (parent.rotation * bend.rotation, parent.translation + moved)
     }
 }
+
+#[cfg(test)]
+mod tests;

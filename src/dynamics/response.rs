@@ -11,9 +11,15 @@
 //! Since this transfer function maps real signals to real responses, two signals ride through one complex transform as
 //! its real and imaginary parts.
 //!
-//! The time step bounds the frequencies: a cubic through the samples wants four of them a period, so a step of 1/16 s
-//! serves oscillations up to 4 Hz. Faster beams are in the last class, which follows the load without inertia
-//! (quasi-static): it leaves out their resonance, a few per cent of their small motion.
+//! What this leaves out, as relative rms of the moving part at a damping ratio of 0.1 (`validate basis`):
+//!
+//! - The time step bounds the frequencies: a cubic through the samples wants four of them a period, so a step of 1/16 s
+//!   serves oscillations up to 4 Hz. The spline loses 0.2% at 1 Hz, 1% at 2.2 Hz and 3% at 3.3 Hz, the highest class.
+//! - Faster beams are in the last class, which follows the load without inertia (quasi-static). The small resonance that
+//!   it leaves out is 39% of the motion at 5 Hz; the motion's size and sense are the gusts'.
+//! - Rounding to a class moves a beam's frequency by up to 10%, less than the natural spread of wood's stiffness, and so
+//!   shifts the phase of its sway: 22% from the motion of the exact frequency in the median, though equal in its
+//!   statistics.
 
 use super::load_basis::LoadBasis;
 use bevy::math::{Vec3, Vec4};
@@ -307,3 +313,6 @@ fn transfer_function(samples: usize, time_step_s: f32, frequency_hz: f32, dampin
     };
     (0..samples).map(value).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,117 @@
+use super::super::load_basis::LoadBasisKind;
+use super::super::oscillator::Oscillator;
+use super::*;
+
+/// A wind of a few harmonics of a period of 8 s, in steps of 1/16 s.
+fn column(shift_s: f32) -> Vec<Vec3> {
+    let velocity = |step: usize| {
+        let angle = std::f32::consts::TAU * (step as f32 / 128.0 + shift_s / 8.0);
+        Vec3::new(6.0 + angle.sin() + 0.7 * (5.0 * angle).cos(), 0.5 * (3.0 * angle).sin(), (2.0 * angle).cos())
+    };
+    (0..128).map(velocity).collect()
+}
+
+fn drag(velocity: Vec3, direction: Vec3) -> Vec3 {
+    let normal = velocity - velocity.dot(direction) * direction;
+    normal.length() * normal
+}
+
+fn table(columns: &[Vec<Vec3>]) -> (LoadBasis, ResponseTable) {
+    let basis = LoadBasis::new(LoadBasisKind::Principal, &columns.concat(), drag);
+    let table = ResponseTable::new(columns, 1.0 / 16.0, &basis, FrequencyClasses::default(), 0.1);
+    (basis, table)
+}
+
+#[test]
+fn rows_are_the_oscillators_steady_response() {
+    let columns = [column(0.0), column(1.0)];
+    let (basis, table) = table(&columns);
+    for class in [0, 10, 16, 21] {
+        let omega = TAU * f64::from(table.classes.frequency_hz(class));
+        let oscillator = Oscillator::new(omega, f64::from(0.1f32)).unwrap();
+        for (index, column) in columns.iter().enumerate() {
+            for k in 0..4 {
+                let load: Vec<f64> = column.iter().map(|&v| f64::from(basis.signals(v)[k]) * omega * omega).collect();
+                for (time, exact) in oscillator.periodic_response(&load, 1.0 / 16.0).iter().enumerate() {
+                    let value = f64::from(table.values[table.index(class, index, time)][k]);
+                    // Rounding in f32, of signals of variance 1 amplified up to five times.
+                    assert!((value - exact).abs() < 2e-4, "{value} is not {exact}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn last_class_is_the_signal_itself() {
+    let columns = [column(0.0)];
+    let (basis, table) = table(&columns);
+    for (time, &velocity) in columns[0].iter().enumerate() {
+        assert_eq!(table.values[table.index(22, 0, time)], basis.signals(velocity));
+    }
+}
+
+#[test]
+fn spline_meets_the_samples_and_goes_round() {
+    let columns = [column(0.0), column(3.0)];
+    let (_, table) = table(&columns);
+    assert_eq!(table.period_s(), 8.0);
+    for time in [0, 1, 64, 127] {
+        let tau_s = time as f64 / 16.0;
+        assert_eq!(table.response(12, 1, tau_s), table.values[table.index(12, 1, time)]);
+        assert_eq!(table.velocity(1, tau_s), columns[1][time]);
+        for later in [tau_s + 8.0, tau_s - 16.0] {
+            assert_eq!(table.response(12, 1, later), table.response(12, 1, tau_s));
+        }
+    }
+    // Between samples of a slow class the spline of steps h is off by about (w h)^3 / 20 of each harmonic.
+    let (before, between, after) =
+        (table.response(3, 0, 2.0), table.response(3, 0, 2.0 + 1.0 / 32.0), table.response(3, 0, 2.0 + 1.0 / 16.0));
+    assert!((between - 0.5 * (before + after)).abs().max_element() < 1e-2);
+    let mut all = [Vec4::NAN; 23];
+    table.responses(1, 1.23, &mut all);
+    assert_eq!(all[7], table.response(7, 1, 1.23));
+}
+
+#[test]
+fn classes_are_of_equal_ratio() {
+    let classes = FrequencyClasses::default();
+    for class in 0..classes.quasi_static() {
+        assert_eq!(classes.nearest(classes.coordinate(classes.frequency_hz(class))), class);
+    }
+    let rounded = |frequency_hz: f32| classes.frequency_hz(classes.nearest(classes.coordinate(frequency_hz)));
+    // Half a step is 1.22^(1/2) = 1.105.
+    for frequency_hz in [0.06, 0.1, 0.77, 3.0] {
+        assert!((rounded(frequency_hz) / frequency_hz).ln().abs() < 0.1);
+    }
+    assert_eq!(rounded(5.9), f32::INFINITY);
+    assert_eq!(classes.nearest(classes.coordinate(1e-3)), 0);
+    assert!((classes.coordinate(1.0) + classes.shift(2.0) - classes.coordinate(0.5)).abs() < 1e-4);
+}
+
+#[test]
+fn nonsense_classes_are_named_and_survived() {
+    let classes = FrequencyClasses::default();
+    assert_eq!(classes.validate(), Ok(classes));
+    let error = FrequencyClasses { ratio: 1.0, ..classes }.validate().unwrap_err();
+    assert_eq!(error.to_string(), "ratio is 1, but must be above 1");
+    for frequency_hz in [f32::NAN, 0.0, -1.0, f32::INFINITY] {
+        assert_eq!(classes.nearest(classes.coordinate(frequency_hz)), 22);
+    }
+    assert_eq!(classes.nearest(f32::NAN), 22);
+    assert_eq!(classes.shift(0.0), 0.0);
+    assert_eq!(FrequencyClasses { count: 0, ..classes }.nearest(3.0), 0);
+}
+
+#[test]
+fn nonsense_winds_are_calm() {
+    for columns in [&[][..], &[vec![]][..], &[vec![Vec3::NAN; 5], vec![Vec3::ZERO; 3]][..]] {
+        let (_, table) = table(columns);
+        assert_eq!(table.response(40, 40, f64::NAN), Vec4::ZERO);
+        assert_eq!(table.velocity(40, -1e300), Vec3::ZERO);
+        assert!(table.samples > 0 && table.columns > 0);
+    }
+    let basis = LoadBasis::new(LoadBasisKind::Principal, &column(0.0), drag);
+    let table = ResponseTable::new(&[column(0.0)], f32::NAN, &basis, FrequencyClasses::default(), f32::NAN);
+    assert!(table.values.iter().all(|value| value.is_finite()));
+}
