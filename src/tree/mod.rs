@@ -30,3 +30,6 @@ pub use plugin::TreePlugin;
 pub use species::{Species, SpeciesError};
 
 pub(crate) use grove::receive_models;
+
+#[cfg(test)]
+mod tests;
