@@ -193,9 +193,9 @@ pub fn test_wind(seed: u64, samples: usize, oversampling: usize) -> Vec<Vec3> {
         let count = samples * oversampling;
         let mut spectrum = vec![Complex::<f64>::default(); count];
         let frequency_step_hz = 1.0 / (samples as f64 * TIME_STEP_S);
-        for bin in 1..samples / 2 {
+        for (bin, value) in spectrum.iter_mut().enumerate().take(samples / 2).skip(1) {
             let amplitude = (2.0 * spectra(bin as f64 * frequency_step_hz)[component] * frequency_step_hz).sqrt();
-            spectrum[bin] = Complex::from_polar(amplitude, random.random_range(0.0..TAU));
+            *value = Complex::from_polar(amplitude, random.random_range(0.0..TAU));
         }
         FftPlanner::new().plan_fft_inverse(count).process(&mut spectrum);
         spectrum.into_iter().map(|value| value.re).collect::<Vec<f64>>()

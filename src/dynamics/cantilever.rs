@@ -125,7 +125,7 @@ pub struct TaperedBeam {
     pub base_radius_m: f64,
     /// Radius at the tip, in metres.
     pub tip_radius_m: f64,
-    /// Young's modulus in Pa; green wood has some 5 to 12 GPa.
+    /// Young's modulus in Pa; green wood has some 5e9 to 12e9.
     pub young_modulus_pa: f64,
     /// Density in kg/m^3; green wood has some 600 to 1100.
     pub density_kg_m3: f64,

@@ -13,8 +13,8 @@
 //! ```
 //!
 //! The size is odd, so that a vertical trunk lies on a texel's centre, as do both senses of the mean wind's direction
-//! (two corners). There is no filtering: a texel is 64 bytes, one line of cache, and the error of the nearest of
-//! 129 x 129 texels is below that of the basis itself.
+//! (two corners). There is no filtering: a texel is 64 bytes, one line of cache, and the nearest of 129 x 129
+//! texels is at most 1.6 degrees off.
 
 use bevy::math::{Vec2, Vec3};
 

@@ -28,7 +28,7 @@ const PARALLEL: f32 = 1e-4;
 
 /// How a species' leaves answer the wind.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct LeafResponse {
     /// Share of the angle to the wind's direction that a leaf turns through in full wind, 0 to 1.
     pub turn: f32,
@@ -52,6 +52,37 @@ impl Default for LeafResponse {
             full_speed_m_s: 12.0,
             flutter_angle_rad: 0.35,
             flutter_frequency_hz: 3.0,
+        }
+    }
+}
+
+/// Why leaves cannot answer the wind in this way.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{field} is {value}, but must be {allowed}")]
+pub struct InvalidLeafResponse {
+    /// The field's name.
+    pub field: &'static str,
+    /// Its value.
+    pub value: f32,
+    /// What is allowed.
+    pub allowed: &'static str,
+}
+
+impl LeafResponse {
+    /// This response, if it keeps leaves finite: a share from 0 to 1, and speeds, angle and frequency from 0, the full
+    /// speed above the onset.
+    pub fn validate(self) -> Result<Self, InvalidLeafResponse> {
+        let onset = self.onset_speed_m_s;
+        let checks = [
+            ("turn", self.turn, 0.0..=1.0, "0 to 1"),
+            ("onset_speed_m_s", onset, 0.0..=f32::MAX, "at least 0 and finite"),
+            ("full_speed_m_s", self.full_speed_m_s, onset.next_up()..=f32::MAX, "above onset_speed_m_s and finite"),
+            ("flutter_angle_rad", self.flutter_angle_rad, 0.0..=f32::MAX, "at least 0 and finite"),
+            ("flutter_frequency_hz", self.flutter_frequency_hz, 0.0..=f32::MAX, "at least 0 and finite"),
+        ];
+        match checks.into_iter().find(|(_, value, allowed, _)| !allowed.contains(value)) {
+            Some((field, value, _, allowed)) => Err(InvalidLeafResponse { field, value, allowed }),
+            None => Ok(self),
         }
     }
 }
@@ -162,6 +193,18 @@ mod tests {
         let response = LeafResponse::default();
         let axis = |phase| turn(&response, Vec3::Z, Vec3::X * 20.0, 3.0, 64.0, phase) * Vec3::Z;
         assert!(axis(0.1).distance(axis(0.4)) > 0.01);
+    }
+
+    #[test]
+    fn bad_responses_are_named() {
+        assert_eq!(STILL.validate(), Ok(STILL));
+        let error = LeafResponse { turn: 1.5, ..STILL }.validate().unwrap_err();
+        assert_eq!(error.to_string(), "turn is 1.5, but must be 0 to 1");
+        for bad in
+            [LeafResponse { full_speed_m_s: 2.0, ..STILL }, LeafResponse { flutter_angle_rad: f32::NAN, ..STILL }]
+        {
+            assert!(bad.validate().is_err());
+        }
     }
 
     #[test]

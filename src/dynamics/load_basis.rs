@@ -27,10 +27,10 @@ use serde::{Deserialize, Serialize};
 /// Number of basis signals: as many as fill one vec4 of the response table.
 pub const BASIS_RANK: usize = 4;
 
-/// Directions whose loads the principal components are taken from, spread evenly over a hemisphere. Measured: 24, 48
-/// and 96 leave the same error.
+/// Directions whose loads the principal components are taken from, spread evenly over a hemisphere: more
+/// than ten times as many load components as there are signals to be found.
 const TRAINING_DIRECTIONS: usize = 48;
-/// Velocities at which the statistics are taken; more do not change the error (see the module's tests).
+/// Velocities at which the statistics are taken; these bound the time that building a basis takes.
 const STATISTICS_SAMPLES: usize = 1024;
 /// Texels a side of the map of regressed coefficients; the one looked up has twice as many.
 const REGRESSED_MAP_SIZE: usize = 65;
