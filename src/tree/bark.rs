@@ -90,7 +90,13 @@ const SIZE: usize = 512;
 /// Paints a bark.
 #[must_use]
 pub fn bark_textures(bark: &Bark, seed: u64) -> BarkTextures {
-    let surface = Surface { bark, seed: seed as u32 ^ (seed >> 32) as u32 };
+    let surface = Surface {
+        bark,
+        colour: linear(bark.colour),
+        furrow: linear(bark.furrow_colour),
+        lichen: linear(bark.lichen_colour),
+        seed: seed as u32 ^ (seed >> 32) as u32,
+    };
     let points: Vec<Point> = (0..SIZE * SIZE)
         .map(|index| {
             let texel = Vec2::new((index % SIZE) as f32 + 0.5, (index / SIZE) as f32 + 0.5);
@@ -123,6 +129,10 @@ struct Point {
 
 struct Surface<'a> {
     bark: &'a Bark,
+    /// Linear colours of plates, furrows and lichen.
+    colour: [f32; 3],
+    furrow: [f32; 3],
+    lichen: [f32; 3],
     seed: u32,
 }
 
@@ -144,10 +154,9 @@ impl Surface<'_> {
     }
 
     fn colour(&self, point: &Point) -> [f32; 4] {
-        let bark = self.bark;
-        let plate = mix(linear(bark.colour), linear(bark.lichen_colour), 0.8 * point.lichen);
-        let shade = 0.75 + 0.35 * point.tone + 0.35 * point.grain * bark.roughness;
-        let colour = mix(linear(bark.furrow_colour), plate.map(|channel| channel * shade), point.plate);
+        let plate = mix(self.colour, self.lichen, 0.8 * point.lichen);
+        let shade = 0.75 + 0.35 * point.tone + 0.35 * point.grain * self.bark.roughness;
+        let colour = mix(self.furrow, plate.map(|channel| channel * shade), point.plate);
         [colour[0], colour[1], colour[2], 1.0]
     }
 
@@ -193,7 +202,7 @@ impl Surface<'_> {
         1.4 * (top + (bottom - top) * fade.y)
     }
 
-    /// Mixes lattice point, salt and seed (the finaliser of MurmurHash3).
+    /// Mixes lattice point, salt and seed (the finaliser of `MurmurHash3`).
     fn hash(&self, x: i32, y: i32, salt: u32) -> u32 {
         let mut hash = self.seed ^ (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77);
         hash ^= salt.wrapping_mul(0xc2b2_ae3d);
@@ -257,7 +266,8 @@ mod tests {
             let column = |x: usize| move |y: usize| y * SIZE + x;
             let row = |y: usize| move |x: usize| y * SIZE + x;
             let across_seam = difference(texture, column(SIZE - 1), column(0));
-            let inside: f32 = (1..9).map(|k| difference(texture, column(50 * k), column(50 * k + 1))).sum::<f32>() / 8.0;
+            let inside: f32 =
+                (1..9).map(|k| difference(texture, column(50 * k), column(50 * k + 1))).sum::<f32>() / 8.0;
             // A seam would differ like strangers, several times as much as neighbours do.
             assert!(across_seam < 1.7 * inside, "{across_seam} across the seam, {inside} inside");
             let across_seam = difference(texture, row(SIZE - 1), row(0));

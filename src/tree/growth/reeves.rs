@@ -183,9 +183,10 @@ impl ReevesBlau {
         if self.orders.len() > ORDERS_LIMIT {
             return Err(SpeciesError::out_of_range("orders", self.orders.len(), "at most 5 orders"));
         }
-        self.orders.iter().enumerate().try_for_each(|(index, order)| {
-            order.validate().map_err(|error| error.inside(&format!("orders[{index}]")))
-        })
+        self.orders
+            .iter()
+            .enumerate()
+            .try_for_each(|(index, order)| order.validate().map_err(|error| error.inside(&format!("orders[{index}]"))))
     }
 }
 
@@ -323,10 +324,11 @@ impl<R: Rng> Grower<'_, R> {
         let share = along_m / parent.length_m.max(1e-3);
         let position = ((share - order.first_at) / (order.last_at - order.first_at).max(1e-3)).clamp(0.0, 1.0);
 
-        let angle = lerp(order.first_angle_deg, order.last_angle_deg, position) + order.angle_spread_deg * self.signed();
+        let angle =
+            lerp(order.first_angle_deg, order.last_angle_deg, position) + order.angle_spread_deg * self.signed();
         let roll = roll_rad + order.roll_spread_deg.to_radians() * self.signed();
-        let direction = leave(beam.tangent(attach), angle.to_radians(), roll)
-            + self.envelope.outward(base) * order.light_seeking;
+        let direction =
+            leave(beam.tangent(attach), angle.to_radians(), roll) + self.envelope.outward(base) * order.light_seeking;
         let direction = direction.try_normalize().unwrap_or(Vec3::Y);
         let own_m = order.length * parent.length_m * (1.0 - order.taper * position);
         let room_m = order.reach * self.envelope.exit_distance_m(base, direction);
@@ -359,7 +361,8 @@ impl<R: Rng> Grower<'_, R> {
         let segment_m = length_m / habit.segments as f32;
         let turns = habit.segments.saturating_sub(1).max(1) as f32;
         for segment in 0..habit.segments {
-            let room_m = if bud.order == 0 { segment_m } else { self.envelope.exit_distance_m(bud.base, bud.direction) };
+            let room_m =
+                if bud.order == 0 { segment_m } else { self.envelope.exit_distance_m(bud.base, bud.direction) };
             if segment > 0 && room_m < SHORTEST_SEGMENT_SHARE * segment_m {
                 break;
             }
