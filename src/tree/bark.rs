@@ -172,29 +172,32 @@ impl Surface<'_> {
     fn cell(&self, point: Vec2) -> (f32, f32) {
         let (columns, rows) = (self.bark.plates_around as i32, self.bark.plates_along as i32);
         let home = point.floor();
+        let (home_x, home_y) = ((home.x as i32).rem_euclid(columns), (home.y as i32).rem_euclid(rows));
         let (mut nearest, mut second, mut tone) = (f32::INFINITY, f32::INFINITY, 0.0);
         for step in 0..9 {
-            let cell = home + Vec2::new((step % 3 - 1) as f32, (step / 3 - 1) as f32);
-            let hash = self.hash((cell.x as i32).rem_euclid(columns), (cell.y as i32).rem_euclid(rows), 0);
-            let centre = cell + Vec2::new(unit(hash), unit(hash.rotate_left(11)));
-            let distance = centre.distance(point);
+            let (dx, dy) = (step % 3 - 1, step / 3 - 1);
+            let hash = self.hash(wrapped(home_x + dx, columns), wrapped(home_y + dy, rows), 0);
+            let jitter = Vec2::new(unit(hash), unit(hash.rotate_left(11)));
+            let centre = home + Vec2::new(dx as f32, dy as f32) + jitter;
+            let distance = centre.distance_squared(point);
             if distance < nearest {
                 (second, nearest, tone) = (nearest, distance, unit(hash.rotate_left(23)));
             } else {
                 second = second.min(distance);
             }
         }
-        (second - nearest, tone)
+        (second.sqrt() - nearest.sqrt(), tone)
     }
 
     /// Gradient noise of whole periods over the tile, about -1..1; `uv` within 0..1.
     fn noise(&self, uv: Vec2, columns: i32, rows: i32, salt: u32) -> f32 {
         let point = uv * Vec2::new(columns as f32, rows as f32);
-        let home = point.floor();
-        let within = point - home;
+        // `uv` is not negative, so truncation is the floor (which is a call on plain x86-64).
+        let (home_x, home_y) = (point.x as i32, point.y as i32);
+        let within = point - Vec2::new(home_x as f32, home_y as f32);
         let corner = |dx: i32, dy: i32| {
-            let (x, y) = (wrapped(home.x as i32 + dx, columns), wrapped(home.y as i32 + dy, rows));
-            gradient(self.hash(x, y, salt)).dot(within - Vec2::new(dx as f32, dy as f32))
+            let hash = self.hash(wrapped(home_x + dx, columns), wrapped(home_y + dy, rows), salt);
+            GRADIENTS[(hash & 7) as usize].dot(within - Vec2::new(dx as f32, dy as f32))
         };
         let fade = within * within * (Vec2::splat(3.0) - 2.0 * within);
         let top = corner(0, 0) + (corner(1, 0) - corner(0, 0)) * fade.x;
@@ -212,24 +215,27 @@ impl Surface<'_> {
     }
 }
 
-/// One of eight directions.
-fn gradient(hash: u32) -> Vec2 {
-    const DIAGONAL: f32 = std::f32::consts::FRAC_1_SQRT_2;
-    match hash & 7 {
-        0 => Vec2::X,
-        1 => Vec2::NEG_X,
-        2 => Vec2::Y,
-        3 => Vec2::NEG_Y,
-        4 => Vec2::splat(DIAGONAL),
-        5 => Vec2::splat(-DIAGONAL),
-        6 => Vec2::new(DIAGONAL, -DIAGONAL),
-        _ => Vec2::new(-DIAGONAL, DIAGONAL),
-    }
-}
+const DIAGONAL: f32 = std::f32::consts::FRAC_1_SQRT_2;
 
-/// The lattice point past the last is the first again.
+/// The directions in which gradient noise may rise.
+const GRADIENTS: [Vec2; 8] = [
+    Vec2::X,
+    Vec2::NEG_X,
+    Vec2::Y,
+    Vec2::NEG_Y,
+    Vec2::splat(DIAGONAL),
+    Vec2::splat(-DIAGONAL),
+    Vec2::new(DIAGONAL, -DIAGONAL),
+    Vec2::new(-DIAGONAL, DIAGONAL),
+];
+
+/// The lattice point past the last is the first again, and the one before the first the last.
 fn wrapped(index: i32, count: i32) -> i32 {
-    if index >= count { index - count } else { index }
+    match index {
+        _ if index >= count => index - count,
+        _ if index < 0 => index + count,
+        _ => index,
+    }
 }
 
 /// The low bits as a share of one.

@@ -84,7 +84,7 @@ pub struct BranchOrder {
     pub spacing_m: f32,
     /// Random part of that distance, 0 to 1.
     pub spacing_spread: f32,
-    /// Buds at a node, 1 to 12.
+    /// Buds at a node, 1 to 12. Pairs start level, left and right; others start anywhere around the parent.
     pub per_node: u32,
     /// Probability that a bud in full light grows, 0 to 1.
     pub probability: f32,
@@ -300,10 +300,8 @@ impl<R: Rng> Grower<'_, R> {
         let spacing_m = order.spacing_m * self.scale;
         let end_m = order.last_at * parent.length_m;
         let mut along_m = order.first_at * parent.length_m;
-        let mut roll_rad = self.random.random_range(0.0..std::f32::consts::TAU);
-        if order.roll_spread_deg < 90.0 && order.per_node == 2 {
-            roll_rad = 0.0;
-        }
+        let anywhere_rad = self.random.random_range(0.0..std::f32::consts::TAU);
+        let mut roll_rad = if order.per_node == 2 { 0.0 } else { anywhere_rad };
         while along_m <= end_m + 1e-4 && self.beams.len() < BEAMS_LIMIT {
             for sibling in 0..order.per_node {
                 let roll_rad = roll_rad + std::f32::consts::TAU * sibling as f32 / order.per_node as f32;
