@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     species::{SpeciesError, require, require_colour},
-    texture::{Canvas, TextureData, linear},
+    texture::{Canvas, TextureData, linear, mix},
 };
 
 /// What the bark of a species looks like.
@@ -246,10 +246,6 @@ fn unit(hash: u32) -> f32 {
 fn smoothstep(low: f32, high: f32, value: f32) -> f32 {
     let share = ((value - low) / (high - low)).clamp(0.0, 1.0);
     share * share * (3.0 - 2.0 * share)
-}
-
-fn mix(from: [f32; 3], to: [f32; 3], share: f32) -> [f32; 3] {
-    std::array::from_fn(|channel| from[channel] + (to[channel] - from[channel]) * share)
 }
 
 #[cfg(test)]

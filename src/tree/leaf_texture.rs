@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     foliage::Foliage,
     species::{SpeciesError, require, require_colour},
-    texture::{Canvas, TextureData, linear},
+    texture::{Canvas, TextureData, linear, mix},
 };
 
 /// The leaves of a spray.
@@ -298,10 +298,6 @@ fn relief(shape: LeafShape, along: f32, across: f32) -> Option<f32> {
 /// One crest per lobe.
 fn lobe_wave(slanted: f32) -> f32 {
     (std::f32::consts::TAU * (4.6 * slanted + 0.35)).cos()
-}
-
-fn mix(from: [f32; 3], to: [f32; 3], share: f32) -> [f32; 3] {
-    std::array::from_fn(|channel| from[channel] + (to[channel] - from[channel]) * share)
 }
 
 #[cfg(test)]

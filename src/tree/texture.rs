@@ -145,6 +145,11 @@ pub(super) fn linear(srgb: [f32; 3]) -> [f32; 3] {
     srgb.map(|value| if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) })
 }
 
+/// The colour `share` of the way from one to another.
+pub(super) fn mix(from: [f32; 3], to: [f32; 3], share: f32) -> [f32; 3] {
+    std::array::from_fn(|channel| from[channel] + (to[channel] - from[channel]) * share)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
