@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     species::{SpeciesError, require, require_colour},
-    texture::{Canvas, TextureData, linear},
+    texture::{Canvas, TextureData, linear, mix},
 };
 
 /// What the bark of a species looks like.
@@ -90,7 +90,13 @@ const SIZE: usize = 512;
 /// Paints a bark.
 #[must_use]
 pub fn bark_textures(bark: &Bark, seed: u64) -> BarkTextures {
-    let surface = Surface { bark, seed: seed as u32 ^ (seed >> 32) as u32 };
+    let surface = Surface {
+        bark,
+        colour: linear(bark.colour),
+        furrow: linear(bark.furrow_colour),
+        lichen: linear(bark.lichen_colour),
+        seed: seed as u32 ^ (seed >> 32) as u32,
+    };
     let points: Vec<Point> = (0..SIZE * SIZE)
         .map(|index| {
             let texel = Vec2::new((index % SIZE) as f32 + 0.5, (index / SIZE) as f32 + 0.5);
@@ -123,6 +129,10 @@ struct Point {
 
 struct Surface<'a> {
     bark: &'a Bark,
+    /// Linear colours of plates, furrows and lichen.
+    colour: [f32; 3],
+    furrow: [f32; 3],
+    lichen: [f32; 3],
     seed: u32,
 }
 
@@ -144,10 +154,9 @@ impl Surface<'_> {
     }
 
     fn colour(&self, point: &Point) -> [f32; 4] {
-        let bark = self.bark;
-        let plate = mix(linear(bark.colour), linear(bark.lichen_colour), 0.8 * point.lichen);
-        let shade = 0.75 + 0.35 * point.tone + 0.35 * point.grain * bark.roughness;
-        let colour = mix(linear(bark.furrow_colour), plate.map(|channel| channel * shade), point.plate);
+        let plate = mix(self.colour, self.lichen, 0.8 * point.lichen);
+        let shade = 0.75 + 0.35 * point.tone + 0.35 * point.grain * self.bark.roughness;
+        let colour = mix(self.furrow, plate.map(|channel| channel * shade), point.plate);
         [colour[0], colour[1], colour[2], 1.0]
     }
 
@@ -163,29 +172,32 @@ impl Surface<'_> {
     fn cell(&self, point: Vec2) -> (f32, f32) {
         let (columns, rows) = (self.bark.plates_around as i32, self.bark.plates_along as i32);
         let home = point.floor();
+        let (home_x, home_y) = ((home.x as i32).rem_euclid(columns), (home.y as i32).rem_euclid(rows));
         let (mut nearest, mut second, mut tone) = (f32::INFINITY, f32::INFINITY, 0.0);
         for step in 0..9 {
-            let cell = home + Vec2::new((step % 3 - 1) as f32, (step / 3 - 1) as f32);
-            let hash = self.hash((cell.x as i32).rem_euclid(columns), (cell.y as i32).rem_euclid(rows), 0);
-            let centre = cell + Vec2::new(unit(hash), unit(hash.rotate_left(11)));
-            let distance = centre.distance(point);
+            let (dx, dy) = (step % 3 - 1, step / 3 - 1);
+            let hash = self.hash(wrapped(home_x + dx, columns), wrapped(home_y + dy, rows), 0);
+            let jitter = Vec2::new(unit(hash), unit(hash.rotate_left(11)));
+            let centre = home + Vec2::new(dx as f32, dy as f32) + jitter;
+            let distance = centre.distance_squared(point);
             if distance < nearest {
                 (second, nearest, tone) = (nearest, distance, unit(hash.rotate_left(23)));
             } else {
                 second = second.min(distance);
             }
         }
-        (second - nearest, tone)
+        (second.sqrt() - nearest.sqrt(), tone)
     }
 
     /// Gradient noise of whole periods over the tile, about -1..1; `uv` within 0..1.
     fn noise(&self, uv: Vec2, columns: i32, rows: i32, salt: u32) -> f32 {
         let point = uv * Vec2::new(columns as f32, rows as f32);
-        let home = point.floor();
-        let within = point - home;
+        // `uv` is not negative, so truncation is the floor (which is a call on plain x86-64).
+        let (home_x, home_y) = (point.x as i32, point.y as i32);
+        let within = point - Vec2::new(home_x as f32, home_y as f32);
         let corner = |dx: i32, dy: i32| {
-            let (x, y) = (wrapped(home.x as i32 + dx, columns), wrapped(home.y as i32 + dy, rows));
-            gradient(self.hash(x, y, salt)).dot(within - Vec2::new(dx as f32, dy as f32))
+            let hash = self.hash(wrapped(home_x + dx, columns), wrapped(home_y + dy, rows), salt);
+            GRADIENTS[(hash & 7) as usize].dot(within - Vec2::new(dx as f32, dy as f32))
         };
         let fade = within * within * (Vec2::splat(3.0) - 2.0 * within);
         let top = corner(0, 0) + (corner(1, 0) - corner(0, 0)) * fade.x;
@@ -193,7 +205,7 @@ impl Surface<'_> {
         1.4 * (top + (bottom - top) * fade.y)
     }
 
-    /// Mixes lattice point, salt and seed (the finaliser of MurmurHash3).
+    /// Mixes lattice point, salt and seed (the finaliser of `MurmurHash3`).
     fn hash(&self, x: i32, y: i32, salt: u32) -> u32 {
         let mut hash = self.seed ^ (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77);
         hash ^= salt.wrapping_mul(0xc2b2_ae3d);
@@ -203,24 +215,27 @@ impl Surface<'_> {
     }
 }
 
-/// One of eight directions.
-fn gradient(hash: u32) -> Vec2 {
-    const DIAGONAL: f32 = std::f32::consts::FRAC_1_SQRT_2;
-    match hash & 7 {
-        0 => Vec2::X,
-        1 => Vec2::NEG_X,
-        2 => Vec2::Y,
-        3 => Vec2::NEG_Y,
-        4 => Vec2::splat(DIAGONAL),
-        5 => Vec2::splat(-DIAGONAL),
-        6 => Vec2::new(DIAGONAL, -DIAGONAL),
-        _ => Vec2::new(-DIAGONAL, DIAGONAL),
-    }
-}
+const DIAGONAL: f32 = std::f32::consts::FRAC_1_SQRT_2;
 
-/// The lattice point past the last is the first again.
+/// The directions in which gradient noise may rise.
+const GRADIENTS: [Vec2; 8] = [
+    Vec2::X,
+    Vec2::NEG_X,
+    Vec2::Y,
+    Vec2::NEG_Y,
+    Vec2::splat(DIAGONAL),
+    Vec2::splat(-DIAGONAL),
+    Vec2::new(DIAGONAL, -DIAGONAL),
+    Vec2::new(-DIAGONAL, DIAGONAL),
+];
+
+/// The lattice point past the last is the first again, and the one before the first the last.
 fn wrapped(index: i32, count: i32) -> i32 {
-    if index >= count { index - count } else { index }
+    match index {
+        _ if index >= count => index - count,
+        _ if index < 0 => index + count,
+        _ => index,
+    }
 }
 
 /// The low bits as a share of one.
@@ -231,10 +246,6 @@ fn unit(hash: u32) -> f32 {
 fn smoothstep(low: f32, high: f32, value: f32) -> f32 {
     let share = ((value - low) / (high - low)).clamp(0.0, 1.0);
     share * share * (3.0 - 2.0 * share)
-}
-
-fn mix(from: [f32; 3], to: [f32; 3], share: f32) -> [f32; 3] {
-    std::array::from_fn(|channel| from[channel] + (to[channel] - from[channel]) * share)
 }
 
 #[cfg(test)]
@@ -257,7 +268,8 @@ mod tests {
             let column = |x: usize| move |y: usize| y * SIZE + x;
             let row = |y: usize| move |x: usize| y * SIZE + x;
             let across_seam = difference(texture, column(SIZE - 1), column(0));
-            let inside: f32 = (1..9).map(|k| difference(texture, column(50 * k), column(50 * k + 1))).sum::<f32>() / 8.0;
+            let inside: f32 =
+                (1..9).map(|k| difference(texture, column(50 * k), column(50 * k + 1))).sum::<f32>() / 8.0;
             // A seam would differ like strangers, several times as much as neighbours do.
             assert!(across_seam < 1.7 * inside, "{across_seam} across the seam, {inside} inside");
             let across_seam = difference(texture, row(SIZE - 1), row(0));

@@ -39,7 +39,7 @@ const NORMAL_SHARES: [f32; 3] = [0.45, 0.75, 0.5];
 /// The order of branches whose foliage makes a clump.
 const CLUMP_ORDER: u8 = 2;
 /// Ambient light on the lower, inner side of a clump.
-const CLUMP_SHADE: f32 = 0.5;
+const CLUMP_SHADE: f32 = 0.38;
 
 /// Cuts the cards of all sprays.
 #[must_use]

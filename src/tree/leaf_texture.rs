@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     foliage::Foliage,
     species::{SpeciesError, require, require_colour},
-    texture::{Canvas, TextureData, linear},
+    texture::{Canvas, TextureData, linear, mix},
 };
 
 /// The leaves of a spray.
@@ -85,8 +85,12 @@ const OVERSAMPLING: usize = 2;
 const SHOOT_ANGLE_RAD: f32 = 0.85;
 /// Brightness of the lowest leaves of a spray against the topmost.
 const LOWEST_SHADE: f32 = 0.5;
+/// Share of a broad-leaved shoot that bears no leaves.
+const BARE_SHARE: f32 = 0.5;
+/// Angles of the leaves at a shoot's tip, radians.
+const ROSETTE_RAD: [f32; 5] = [0.0, 0.6, -0.55, 1.25, -1.2];
 /// Margin of the square that stays empty, so that no leaf is cut straight.
-const MARGIN: f32 = 0.008;
+const MARGIN: f32 = 0.02;
 
 /// Paints a spray: colour and mask.
 #[must_use]
@@ -136,7 +140,7 @@ fn shoots(leaf: &Leaf, random: &mut Xoshiro256PlusPlus) -> Vec<Shoot> {
         let angle = SHOOT_ANGLE_RAD * random.random_range(0.85..1.1);
         let direction = Vec2::new(angle.cos(), side * angle.sin());
         let room = (room(root, direction) - 0.85 * leaf.length).max(0.25 * leaf.length);
-        let length = room * random.random_range(0.6_f32..1.0).sqrt();
+        let length = room * random.random_range(0.65..1.0);
         shoots.push(Shoot { root, tip: root + direction * length, radius: 0.004 });
     }
     shoots
@@ -162,7 +166,8 @@ impl Shoot {
         let direction = (self.tip - self.root).normalize_or(Vec2::X);
         let needles = leaf.shape == LeafShape::Needle;
         let step = leaf.spacing * leaf.length;
-        let mut along = if needles { 0.0 } else { 0.35 * length };
+        // Broad leaves crowd towards the tips, so that a spray keeps gaps that show from afar.
+        let mut along = if needles { 0.0 } else { BARE_SHARE * length };
         let mut side = if random.random::<bool>() { 1.0 } else { -1.0 };
         while along < length {
             let share = along / length.max(1e-3);
@@ -171,8 +176,8 @@ impl Shoot {
             side = -side;
             along += step * random.random_range(0.7..1.3);
         }
-        for angle in [0.0, 0.55, -0.5] {
-            let angle = angle + random.random_range(-0.15..0.15);
+        for angle in ROSETTE_RAD {
+            let angle = angle + random.random_range(-0.2..0.2);
             self.grow(leaf, length, direction.rotate(Vec2::from_angle(angle)), 1.0, blades, random);
         }
     }
@@ -266,6 +271,9 @@ fn relief(shape: LeafShape, along: f32, across: f32) -> Option<f32> {
         return None;
     }
     let off = across.abs();
+    if off > 1.05 {
+        return None;
+    }
     // Lobes and veins lean forward: both follow this slanted coordinate.
     let slanted = along - 0.16 * off;
     let (outline, lobes) = match shape {
@@ -290,10 +298,6 @@ fn relief(shape: LeafShape, along: f32, across: f32) -> Option<f32> {
 /// One crest per lobe.
 fn lobe_wave(slanted: f32) -> f32 {
     (std::f32::consts::TAU * (4.6 * slanted + 0.35)).cos()
-}
-
-fn mix(from: [f32; 3], to: [f32; 3], share: f32) -> [f32; 3] {
-    std::array::from_fn(|channel| from[channel] + (to[channel] - from[channel]) * share)
 }
 
 #[cfg(test)]

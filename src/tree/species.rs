@@ -4,7 +4,7 @@
 //! a pedunculate oak. [`Species::from_ron`] refuses what does not make a tree and says which field, which value and
 //! what is allowed, so that an editor never crashes on a slip of the keyboard.
 
-use std::ops::RangeInclusive;
+use std::{fmt::Display, ops::RangeInclusive};
 
 use bevy::{asset::Asset, reflect::Reflect};
 use ron::{Options, extensions::Extensions};
@@ -87,14 +87,13 @@ impl Species {
     /// where it is one but does not make a tree.
     pub fn from_ron(text: &str) -> Result<Self, SpeciesError> {
         let extensions = Extensions::UNWRAP_VARIANT_NEWTYPES | Extensions::IMPLICIT_SOME;
-        let species: Self =
-            Options::default().with_default_extension(extensions).from_str(text).map_err(|error| {
-                SpeciesError::Syntax {
-                    line: error.span.start.line,
-                    column: error.span.start.col,
-                    message: error.code.to_string(),
-                }
-            })?;
+        let species: Self = Options::default().with_default_extension(extensions).from_str(text).map_err(|error| {
+            SpeciesError::Syntax {
+                line: error.span.start.line,
+                column: error.span.start.col,
+                message: error.code.to_string(),
+            }
+        })?;
         species.validate()?;
         Ok(species)
     }
@@ -139,8 +138,8 @@ pub enum SpeciesError {
 }
 
 impl SpeciesError {
-    pub(super) fn out_of_range(field: &str, value: impl ToString, allowed: impl ToString) -> Self {
-        Self::OutOfRange { field: field.into(), value: value.to_string(), allowed: allowed.to_string() }
+    pub(super) fn out_of_range(field: &str, value: impl Display, allowed: impl Into<String>) -> Self {
+        Self::OutOfRange { field: field.into(), value: value.to_string(), allowed: allowed.into() }
     }
 
     /// The same error seen from the struct around it: `parent` comes before the field's path.

@@ -117,7 +117,7 @@ fn check_vertices(positions: &[[f32; 3]], normals: &[[f32; 3]], sway: &[[f32; 4]
     assert!(positions.len() == normals.len() && positions.len() == sway.len());
     assert!(positions.iter().flatten().all(|value| value.is_finite()));
     assert!(normals.iter().all(|&normal| (Vec3::from(normal).length() - 1.0).abs() < 1e-3));
-    assert!(indices.len() % 3 == 0 && indices.iter().all(|&index| (index as usize) < positions.len()));
+    assert!(indices.len().is_multiple_of(3) && indices.iter().all(|&index| (index as usize) < positions.len()));
     for [beam, s, phase, light] in sway {
         assert!(beam.fract() == 0.0 && (*beam as usize) < beams);
         assert!([s, phase, light].iter().all(|share| (0.0..=1.0).contains(*share)));

@@ -192,7 +192,7 @@ mod tests {
         fn rays_from_the_trunk_leave_where_a_walker_leaves(
             shape in shapes(),
             height in 0.0_f32..0.95,
-            azimuth in 0.0_f32..6.28,
+            azimuth in 0.0_f32..std::f32::consts::TAU,
             elevation in -1.2_f32..1.2,
         ) {
             let envelope = Envelope { shape, base_m: 2.0, top_m: 14.0, radius_m: 5.0 };

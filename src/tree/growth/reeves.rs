@@ -84,7 +84,7 @@ pub struct BranchOrder {
     pub spacing_m: f32,
     /// Random part of that distance, 0 to 1.
     pub spacing_spread: f32,
-    /// Buds at a node, 1 to 12.
+    /// Buds at a node, 1 to 12. Pairs start level, left and right; others start anywhere around the parent.
     pub per_node: u32,
     /// Probability that a bud in full light grows, 0 to 1.
     pub probability: f32,
@@ -183,9 +183,10 @@ impl ReevesBlau {
         if self.orders.len() > ORDERS_LIMIT {
             return Err(SpeciesError::out_of_range("orders", self.orders.len(), "at most 5 orders"));
         }
-        self.orders.iter().enumerate().try_for_each(|(index, order)| {
-            order.validate().map_err(|error| error.inside(&format!("orders[{index}]")))
-        })
+        self.orders
+            .iter()
+            .enumerate()
+            .try_for_each(|(index, order)| order.validate().map_err(|error| error.inside(&format!("orders[{index}]"))))
     }
 }
 
@@ -299,10 +300,8 @@ impl<R: Rng> Grower<'_, R> {
         let spacing_m = order.spacing_m * self.scale;
         let end_m = order.last_at * parent.length_m;
         let mut along_m = order.first_at * parent.length_m;
-        let mut roll_rad = self.random.random_range(0.0..std::f32::consts::TAU);
-        if order.roll_spread_deg < 90.0 && order.per_node == 2 {
-            roll_rad = 0.0;
-        }
+        let anywhere_rad = self.random.random_range(0.0..std::f32::consts::TAU);
+        let mut roll_rad = if order.per_node == 2 { 0.0 } else { anywhere_rad };
         while along_m <= end_m + 1e-4 && self.beams.len() < BEAMS_LIMIT {
             for sibling in 0..order.per_node {
                 let roll_rad = roll_rad + std::f32::consts::TAU * sibling as f32 / order.per_node as f32;
@@ -323,10 +322,11 @@ impl<R: Rng> Grower<'_, R> {
         let share = along_m / parent.length_m.max(1e-3);
         let position = ((share - order.first_at) / (order.last_at - order.first_at).max(1e-3)).clamp(0.0, 1.0);
 
-        let angle = lerp(order.first_angle_deg, order.last_angle_deg, position) + order.angle_spread_deg * self.signed();
+        let angle =
+            lerp(order.first_angle_deg, order.last_angle_deg, position) + order.angle_spread_deg * self.signed();
         let roll = roll_rad + order.roll_spread_deg.to_radians() * self.signed();
-        let direction = leave(beam.tangent(attach), angle.to_radians(), roll)
-            + self.envelope.outward(base) * order.light_seeking;
+        let direction =
+            leave(beam.tangent(attach), angle.to_radians(), roll) + self.envelope.outward(base) * order.light_seeking;
         let direction = direction.try_normalize().unwrap_or(Vec3::Y);
         let own_m = order.length * parent.length_m * (1.0 - order.taper * position);
         let room_m = order.reach * self.envelope.exit_distance_m(base, direction);
@@ -359,7 +359,8 @@ impl<R: Rng> Grower<'_, R> {
         let segment_m = length_m / habit.segments as f32;
         let turns = habit.segments.saturating_sub(1).max(1) as f32;
         for segment in 0..habit.segments {
-            let room_m = if bud.order == 0 { segment_m } else { self.envelope.exit_distance_m(bud.base, bud.direction) };
+            let room_m =
+                if bud.order == 0 { segment_m } else { self.envelope.exit_distance_m(bud.base, bud.direction) };
             if segment > 0 && room_m < SHORTEST_SEGMENT_SHARE * segment_m {
                 break;
             }
