@@ -44,10 +44,10 @@ fn spawn_help(mut commands: Commands) {
     commands
         .spawn((
             Text::new(help),
-            TextFont { font_size: bevy::text::FontSize::Px(15.0), ..default() },
+            TextFont { font_size: FontSize::Px(15.0), ..default() },
             Node { position_type: PositionType::Absolute, left: px(12), top: px(10), ..default() },
         ))
-        .with_child((TextSpan::default(), TextFont { font_size: bevy::text::FontSize::Px(15.0), ..default() }, WindText));
+        .with_child((TextSpan::default(), TextFont { font_size: FontSize::Px(15.0), ..default() }, WindText));
 }
 
 /// Speed steps of 1 m/s, direction steps of 15 degrees. A new wind is built in the background and fades in.

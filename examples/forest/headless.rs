@@ -14,7 +14,7 @@ use bevy::{
     },
     time::TimeUpdateStrategy,
 };
-use bevy_windwood::{prelude::*, tree::Grove};
+use bevy_windwood::prelude::*;
 use image::RgbaImage;
 use std::{
     path::Path,
@@ -47,7 +47,7 @@ fn run(app: &mut App, options: &Options) -> Result<(), String> {
         return Err("there is no graphics device; on Linux, Mesa's software Vulkan is one (mesa-vulkan-drivers)".into());
     }
     let target = spawn_camera(app, options);
-    while !is_ready(app, options) {
+    while !is_ready(app, options)? {
         app.update();
         if begun.elapsed() > PATIENCE {
             return Err("the wind or a species did not get ready; see the warnings above".into());
@@ -93,13 +93,17 @@ fn spawn_camera(app: &mut App, options: &Options) -> Handle<Image> {
     target
 }
 
-/// Whether the wind blows and every tree is drawn.
-fn is_ready(app: &mut App, options: &Options) -> bool {
+/// Whether the wind blows and every tree is drawn; an error if that will never be.
+fn is_ready(app: &mut App, options: &Options) -> Result<bool, String> {
     let world = app.world_mut();
+    let assets = world.resource::<AssetServer>().clone();
+    if let Some(tree) = world.query::<&Tree>().iter(world).find(|tree| assets.load_state(&tree.species).is_failed()) {
+        return Err(format!("{:?} could not be loaded; the reason stands above", tree.species.path()));
+    }
     let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
     let trees = world.query_filtered::<(), With<Tree>>().iter(world).count();
-    let grown = trees > 0 || options.trees == 0;
-    world.resource::<ActiveSway>().is_ready() && !world.resource::<Grove>().is_baking() && grown && bare == 0
+    let planted = trees > 0 || options.trees == 0;
+    Ok(world.resource::<ActiveSway>().is_ready() && planted && bare == 0)
 }
 
 /// One frame, rendered to the end.

@@ -28,7 +28,7 @@ const PARALLEL: f32 = 1e-4;
 
 /// How a species' leaves answer the wind.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
-#[serde(default)]
+#[serde(default, deny_unknown_fields)]
 pub struct LeafResponse {
     /// Share of the angle to the wind's direction that a leaf turns through in full wind, 0 to 1.
     pub turn: f32,

@@ -110,7 +110,10 @@ impl Foliage {
         require("translucency", self.translucency, 0.0..=1.0)?;
         require("mass_per_area_kg_m2", self.mass_per_area_kg_m2, 0.0..=10.0)?;
         require("drag_coefficient", self.drag_coefficient, 0.0..=2.0)?;
-        validate_response(&self.response).map_err(|error| error.inside("response"))?;
+        let response = self.response.validate().map_err(|error| {
+            SpeciesError::out_of_range(error.field, error.value, error.allowed).inside("response")
+        });
+        response?;
         self.leaf.validate().map_err(|error| error.inside("leaf"))
     }
 
@@ -119,14 +122,6 @@ impl Foliage {
     pub fn light(&self, depth: f32) -> f32 {
         (-self.extinction * depth).exp()
     }
-}
-
-fn validate_response(response: &LeafResponse) -> Result<(), SpeciesError> {
-    require("turn", response.turn, 0.0..=1.0)?;
-    require("onset_speed_m_s", response.onset_speed_m_s, 0.0..=100.0)?;
-    require("full_speed_m_s", response.full_speed_m_s, 0.0..=100.0)?;
-    require("flutter_angle_rad", response.flutter_angle_rad, 0.0..=1.5)?;
-    require("flutter_frequency_hz", response.flutter_frequency_hz, 0.0..=20.0)
 }
 
 /// Hangs sprays on all beams that carry leaves.
