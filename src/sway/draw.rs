@@ -5,7 +5,8 @@
 
 use super::{
     looks::{Outfit, SpeciesLooks, VariantLook},
-    material::TAG_BEAM_BITS,
+    material::TAG_TREE_BITS,
+    stand::{Stand, Standing},
 };
 use crate::tree::{Grown, Species, Tree};
 use bevy::{
@@ -22,6 +23,8 @@ pub struct DrawPath {
     pub sways: bool,
     /// Whether the graphics processor culls by itself, so that the processor need not.
     pub culls_on_gpu: bool,
+    /// Beams that can be posed at once, over all trees; trees beyond that stand still.
+    pub pose_limit: u32,
 }
 
 /// The leaves of a tree: a child entity with a draw of its own.
@@ -44,6 +47,8 @@ pub(super) fn dress_trees(
     mut commands: Commands,
     wardrobe: Res<Wardrobe>,
     path: Res<DrawPath>,
+    mut stand: ResMut<Stand>,
+    mut warned: Local<bool>,
     mut dressed: MessageReader<SpeciesDressed>,
     trees: Query<(Entity, &Tree, &Grown, Option<&Children>)>,
     regrown: Query<Entity, Changed<Grown>>,
@@ -59,12 +64,23 @@ pub(super) fn dress_trees(
         for old in children.into_iter().flatten().filter(|child| foliage.contains(**child)) {
             commands.entity(*old).despawn();
         }
+        let standing = if path.sways { stand.admit(grown.model.id(), path.pose_limit) } else { None };
+        if path.sways && standing.is_none() && !*warned {
+            warn!("windwood: this device can pose {} beams at once; trees beyond that stand still", path.pose_limit);
+            *warned = true;
+        }
         let tint = (grown.seed >> 56) as u32;
-        let tag = MeshTag(variant.first_beam | tint << TAG_BEAM_BITS);
-        let wood = Draw { mesh: &variant.wood, outfit: &looks.bark, tag: tag.clone(), variant };
+        let tag = MeshTag(standing.map_or(0, |standing| standing.row) | tint << TAG_TREE_BITS);
+        // The old row, if there is one, is given back when the component goes.
+        let mut tree = commands.entity(entity);
+        tree.remove::<Standing>();
+        if let Some(standing) = standing {
+            tree.insert(standing);
+        }
+        let wood = Draw { mesh: &variant.wood, outfit: &looks.bark, sways: standing.is_some(), tag: tag.clone(), variant };
         wood.put_on(commands.entity(entity), *path);
         if let Some(leaves) = &variant.leaves {
-            let leaves = Draw { mesh: leaves, outfit: &looks.foliage, tag, variant };
+            let leaves = Draw { mesh: leaves, outfit: &looks.foliage, sways: standing.is_some(), tag, variant };
             leaves.put_on(commands.spawn((Foliage, ChildOf(entity), Transform::default())), *path);
         }
     };
@@ -80,6 +96,7 @@ pub(super) fn dress_trees(
 struct Draw<'a> {
     mesh: &'a Handle<Mesh>,
     outfit: &'a Outfit,
+    sways: bool,
     tag: MeshTag,
     variant: &'a VariantLook,
 }
@@ -88,9 +105,9 @@ impl Draw<'_> {
     fn put_on(self, mut entity: EntityCommands, path: DrawPath) {
         // The box holds every pose; the mesh's own would cull a tree that leans into the view.
         entity.insert((Mesh3d(self.mesh.clone()), self.tag, self.variant.bounds, NoAutoAabb));
-        match self.outfit {
-            Outfit::Swaying(material) => entity.insert(MeshMaterial3d(material.clone())),
-            Outfit::Still(material) => entity.insert(MeshMaterial3d(material.clone())),
+        match &self.outfit.swaying {
+            Some(swaying) if self.sways => entity.insert(MeshMaterial3d(swaying.clone())),
+            _ => entity.insert(MeshMaterial3d(self.outfit.still.clone())),
         };
         if path.culls_on_gpu {
             entity.insert(NoCpuCulling);

@@ -1,10 +1,14 @@
 //! Registers the drawing of trees.
 
 use super::{
+    compute,
+    compute::PoseJob,
     draw::{DrawPath, SpeciesDressed, Wardrobe, dress_trees},
     looks::{Tailoring, finish_tailoring, start_tailoring},
     material::SwayMaterial,
-    upload::{WindBuffers, upload_frame, upload_tables},
+    rows::POSE_BYTES,
+    stand::{Stand, dismiss_tree, place_trees},
+    upload::{StandBuffers, upload_frame, upload_winds},
 };
 use crate::{schedule::WindwoodSystems, tree::receive_models};
 use bevy::{
@@ -22,7 +26,7 @@ use bevy::{
 /// Draws [`Tree`](crate::tree::Tree)s, posed in the vertex shader. Without a renderer it does nothing but say so.
 pub struct SwayDrawPlugin;
 
-/// Storage buffers that the vertex stage needs: our four, and Bevy's own for meshes, instances and skins.
+/// Storage buffers that a stage needs: six to pose; to draw, our four and Bevy's own for meshes, instances and skins.
 const STORAGE_BUFFERS_NEEDED: u32 = 8;
 
 impl Plugin for SwayDrawPlugin {
@@ -31,15 +35,19 @@ impl Plugin for SwayDrawPlugin {
             info!("windwood: there is no renderer; trees move but are not drawn");
             return;
         }
-        load_shader_library!(app, "shaders/pose.wgsl");
+        load_shader_library!(app, "shaders/beam.wgsl");
         load_shader_library!(app, "shaders/leaf.wgsl");
+        embedded_asset!(app, "shaders/pose.wgsl");
         embedded_asset!(app, "shaders/sway.wgsl");
-        app.add_plugins(MaterialPlugin::<SwayMaterial>::default())
-            .init_resource::<WindBuffers>()
+        app.add_plugins((MaterialPlugin::<SwayMaterial>::default(), compute::plugin))
+            .init_resource::<StandBuffers>()
+            .init_resource::<PoseJob>()
+            .init_resource::<Stand>()
             .init_resource::<Tailoring>()
             .init_resource::<Wardrobe>()
             .add_message::<SpeciesDressed>()
-            .configure_sets(PostUpdate, WindwoodSystems::Upload.after(WindwoodSystems::Pose))
+            .add_observer(dismiss_tree)
+            .configure_sets(PostUpdate, WindwoodSystems::Upload.after(TransformSystems::Propagate))
             .add_systems(
                 Update,
                 (start_tailoring.after(receive_models), finish_tailoring, dress_trees)
@@ -47,7 +55,7 @@ impl Plugin for SwayDrawPlugin {
                     .in_set(WindwoodSystems::Grow)
                     .run_if(resource_exists::<DrawPath>),
             )
-            .add_systems(PostUpdate, (upload_tables, upload_frame).chain().in_set(WindwoodSystems::Upload));
+            .add_systems(PostUpdate, (upload_winds, place_trees, upload_frame).chain().in_set(WindwoodSystems::Upload));
     }
 
     /// The renderer knows its device only now.
@@ -66,6 +74,9 @@ impl Plugin for SwayDrawPlugin {
             .world()
             .get_resource::<GpuPreprocessingSupport>()
             .is_some_and(|support| support.max_supported_mode == GpuPreprocessingMode::Culling);
-        app.insert_resource(DrawPath { sways, culls_on_gpu });
+        // Poses have two halves, and half as many again are kept ready.
+        let largest = u64::from(device.limits().max_storage_buffer_binding_size).min(device.limits().max_buffer_size);
+        let pose_limit = u32::try_from(largest / (3 * POSE_BYTES as u64)).unwrap_or(u32::MAX);
+        app.insert_resource(DrawPath { sways, culls_on_gpu, pose_limit });
     }
 }

@@ -4,7 +4,8 @@ use super::{
     draw::{DrawPath, SpeciesDressed, Wardrobe},
     material::{ATTRIBUTE_LEAF_ANCHOR, ATTRIBUTE_LEAF_AXIS, ATTRIBUTE_SWAY, LeafUniform, SwayExtension, SwayMaterial},
     rows::BeamRow,
-    upload::WindBuffers,
+    stand::Stand,
+    upload::StandBuffers,
 };
 use crate::tree::{
     BakedSpecies, Grove, Species, SpeciesBaked, TreeModel,
@@ -21,8 +22,7 @@ use bevy::{
     mesh::{Indices, PrimitiveTopology},
     prelude::*,
     render::{
-        render_resource::{Extent3d, Face, TextureDimension, TextureFormat},
-        storage::ShaderBuffer,
+        render_resource::{Extent3d, TextureDimension, TextureFormat},
     },
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
 };
@@ -34,11 +34,10 @@ pub(super) struct SpeciesLooks {
     pub variants: Vec<VariantLook>,
 }
 
-/// The material of a draw.
-#[derive(Clone)]
-pub(super) enum Outfit {
-    Swaying(Handle<SwayMaterial>),
-    Still(Handle<StandardMaterial>),
+/// The material of a draw: swaying, or still where a tree cannot be posed.
+pub(super) struct Outfit {
+    pub swaying: Option<Handle<SwayMaterial>>,
+    pub still: Handle<StandardMaterial>,
 }
 
 /// One variant of a species.
@@ -46,7 +45,6 @@ pub(super) struct VariantLook {
     pub model: AssetId<TreeModel>,
     pub wood: Handle<Mesh>,
     pub leaves: Option<Handle<Mesh>>,
-    pub first_beam: u32,
     pub bounds: Aabb,
 }
 
@@ -71,6 +69,7 @@ pub(super) fn start_tailoring(
     models: Res<Assets<TreeModel>>,
     mut tailoring: ResMut<Tailoring>,
     mut wardrobe: ResMut<Wardrobe>,
+    mut stand: ResMut<Stand>,
 ) {
     for &SpeciesBaked(id) in baked.read() {
         let Some(entry) = grove.get(id) else { continue };
@@ -83,7 +82,9 @@ pub(super) fn start_tailoring(
     for event in events.read() {
         if let AssetEvent::Removed { id } = event {
             tailoring.tasks.retain(|(other, ..)| other != id);
-            wardrobe.looks.remove(id);
+            if let Some(looks) = wardrobe.looks.remove(id) {
+                looks.variants.iter().for_each(|variant| stand.remove_model(variant.model));
+            }
         }
     }
 }
@@ -101,11 +102,11 @@ fn cut(species: &Species, variants: Vec<TreeModel>) -> Cut {
 pub(super) struct Atelier<'w> {
     meshes: ResMut<'w, Assets<Mesh>>,
     images: ResMut<'w, Assets<Image>>,
-    buffers: ResMut<'w, Assets<ShaderBuffer>>,
     swaying: ResMut<'w, Assets<SwayMaterial>>,
     still: ResMut<'w, Assets<StandardMaterial>>,
     models: Res<'w, Assets<TreeModel>>,
-    winds: Res<'w, WindBuffers>,
+    shared: Res<'w, StandBuffers>,
+    stand: ResMut<'w, Stand>,
     path: Res<'w, DrawPath>,
 }
 
@@ -123,7 +124,10 @@ pub(super) fn finish_tailoring(
     tailoring.tasks.retain_mut(|(id, generation, task)| {
         let Some(cut) = block_on(poll_once(task)) else { return true };
         if let Some(entry) = grove.get(*id).filter(|entry| entry.generation == *generation) {
-            wardrobe.looks.insert(*id, atelier.sew(entry, cut));
+            let looks = atelier.sew(entry, cut);
+            if let Some(old) = wardrobe.looks.insert(*id, looks) {
+                old.variants.iter().for_each(|variant| atelier.stand.remove_model(variant.model));
+            }
             dressed.write(SpeciesDressed(*id));
         }
         false
@@ -132,25 +136,22 @@ pub(super) fn finish_tailoring(
 
 impl Atelier<'_> {
     fn sew(&mut self, entry: &BakedSpecies, cut: Cut) -> SpeciesLooks {
-        let mut rows: Vec<BeamRow> = Vec::new();
         let mut variants = Vec::new();
         for (handle, (wood, leaves)) in entry.models.iter().zip(cut.meshes) {
             let Some(model) = self.models.get(handle) else { continue };
+            self.stand.add_model(handle.id(), model.beams.iter().map(BeamRow::from));
             variants.push(VariantLook {
                 model: handle.id(),
                 wood: self.meshes.add(wood),
                 leaves: leaves.map(|leaves| self.meshes.add(leaves)),
-                first_beam: rows.len() as u32,
                 bounds: Aabb::from_min_max(model.bounds.min, model.bounds.max),
             });
-            rows.extend(model.beams.iter().map(BeamRow::from));
         }
-        let beams = ShaderBuffer::new(bytemuck::cast_slice(&rows), RenderAssetUsages::RENDER_WORLD);
         let extension = SwayExtension {
-            wind_a: self.winds.slots[0].clone(),
-            wind_b: self.winds.slots[1].clone(),
-            beams: self.buffers.add(beams),
-            frame: self.winds.frame.clone(),
+            poses: self.shared.poses.clone(),
+            beams: self.shared.beams.clone(),
+            trees: self.shared.trees.clone(),
+            frame: self.shared.frame.clone(),
             leaf: LeafUniform::from(&entry.species.foliage.response),
         };
         let bark = self.bark_material(&cut.bark);
@@ -163,11 +164,8 @@ impl Atelier<'_> {
     }
 
     fn outfit(&mut self, base: StandardMaterial, extension: SwayExtension) -> Outfit {
-        if self.path.sways {
-            Outfit::Swaying(self.swaying.add(SwayMaterial { base, extension }))
-        } else {
-            Outfit::Still(self.still.add(base))
-        }
+        let swaying = self.path.sways.then(|| self.swaying.add(SwayMaterial { base: base.clone(), extension }));
+        Outfit { swaying, still: self.still.add(base) }
     }
 
     fn bark_material(&mut self, textures: &BarkTextures) -> StandardMaterial {
@@ -184,10 +182,12 @@ impl Atelier<'_> {
         StandardMaterial {
             base_color_texture: Some(self.images.add(image(texture, ImageAddressMode::ClampToEdge))),
             alpha_mode: AlphaMode::Mask(0.5),
-            double_sided: true,
-            cull_mode: None::<Face>,
-            perceptual_roughness: 0.7,
-            reflectance: 0.25,
+            // Normals lean out of the crown for soft shading: flipping them for the back of a card would spoil that.
+            double_sided: false,
+            cull_mode: None,
+            perceptual_roughness: 0.8,
+            // More gives white rims against the light.
+            reflectance: 0.08,
             diffuse_transmission: species.foliage.translucency,
             ..default()
         }
@@ -203,7 +203,6 @@ fn image(texture: &TextureData, address_mode: ImageAddressMode) -> Image {
     image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
         address_mode_u: address_mode,
         address_mode_v: address_mode,
-        anisotropy_clamp: 8,
         mag_filter: ImageFilterMode::Linear,
         min_filter: ImageFilterMode::Linear,
         mipmap_filter: ImageFilterMode::Linear,

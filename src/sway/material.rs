@@ -22,8 +22,8 @@ pub const ATTRIBUTE_LEAF_AXIS: MeshVertexAttribute =
 pub const ATTRIBUTE_LEAF_ANCHOR: MeshVertexAttribute =
     MeshVertexAttribute::new("LeafAnchor", 0x4c41_4e43, VertexFormat::Float32x4);
 
-/// Bits of an instance's tag that hold its model's first row in the beam table; the rest is its tint.
-pub(crate) const TAG_BEAM_BITS: u32 = 24;
+/// Bits of an instance's tag that hold its row in the table of trees; the rest is its tint.
+pub(super) const TAG_TREE_BITS: u32 = 24;
 
 /// A standard material whose vertices sway.
 pub type SwayMaterial = ExtendedMaterial<StandardMaterial, SwayExtension>;
@@ -32,15 +32,15 @@ pub type SwayMaterial = ExtendedMaterial<StandardMaterial, SwayExtension>;
 /// changes: a changed material would re-extract every tree that wears it.
 #[derive(Asset, AsBindGroup, Reflect, Clone, Debug)]
 pub struct SwayExtension {
-    /// The wind that fades out, or the only one.
+    /// The poses of all beams of all trees.
     #[storage(100, read_only)]
-    pub wind_a: Handle<ShaderBuffer>,
-    /// The wind that fades in.
+    pub poses: Handle<ShaderBuffer>,
+    /// The beams of every model.
     #[storage(101, read_only)]
-    pub wind_b: Handle<ShaderBuffer>,
-    /// The beams of every variant of the species.
-    #[storage(102, read_only)]
     pub beams: Handle<ShaderBuffer>,
+    /// The trees.
+    #[storage(102, read_only)]
+    pub trees: Handle<ShaderBuffer>,
     /// The clock of the frame.
     #[storage(103, read_only)]
     pub frame: Handle<ShaderBuffer>,

@@ -3,14 +3,17 @@
 //! - `response` turns a wind field into tables, once per wind, off the frame.
 //! - `active` fades from the tables of one wind to those of the next.
 //! - `articulated` poses the trees that ask for it on the processor.
-//! - With the feature `render`, `draw` puts meshes and materials on trees, `upload` writes the frame's clock, and
-//!   `shaders/sway.wgsl` poses every vertex: no work per tree and frame on the processor.
+//! - With the feature `render`, `draw` puts meshes and materials on trees and `stand` gives them rows in shared tables;
+//!   each frame `upload` writes the clock, `compute` poses all beams on the graphics processor (`shaders/pose.wgsl`), and
+//!   `shaders/sway.wgsl` carries every vertex: no work per tree and frame on the processor.
 
 mod active;
 mod articulated;
 mod plugin;
 mod response;
 
+#[cfg(feature = "render")]
+mod compute;
 #[cfg(feature = "render")]
 mod draw;
 #[cfg(feature = "render")]
@@ -21,6 +24,8 @@ mod looks;
 mod material;
 #[cfg(feature = "render")]
 mod rows;
+#[cfg(feature = "render")]
+mod stand;
 #[cfg(feature = "render")]
 mod upload;
 

@@ -1,12 +1,12 @@
-//! The tables as the shaders read them. Each layout here has its twin in `shaders/pose.wgsl`.
+//! The tables as the shaders read them. Each layout here has its twin in `shaders/beam.wgsl` or `shaders/pose.wgsl`.
 
 use crate::{dynamics::pose::BeamDynamics, sway::response::WindResponse};
 use bytemuck::{Pod, Zeroable};
 
 /// `BeamRow` of the shader: one beam of a model.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub(crate) struct BeamRow {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(super) struct BeamRow {
     base: [f32; 3],
     length_m: f32,
     direction: [f32; 3],
@@ -35,24 +35,42 @@ impl From<&BeamDynamics> for BeamRow {
 /// `Frame` of the shader: the clock of one frame.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub(crate) struct FrameRow {
+pub(super) struct FrameRow {
     /// Now and one frame ago, s, each wrapped into the periods of slot A and slot B: a now, b now, a before, b before.
     pub time_s: [f32; 4],
     /// Weight of slot B now and one frame ago.
     pub blend: [f32; 2],
     /// Now and one frame ago in the period of the leaves' flutter, s.
     pub leaf_time_s: [f32; 2],
+    /// First pose of this frame's half and of the last frame's.
+    pub poses_now: u32,
+    pub poses_before: u32,
     /// 1 once there is a wind, 0 before.
-    pub ready: f32,
-    /// Keeps the row a multiple of 16 bytes.
-    pub padding: [f32; 3],
+    pub ready: u32,
+    pub tree_count: u32,
 }
+
+/// `TreeRow` of the shader: one tree. Without beams it is a row that nobody has.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(super) struct TreeRow {
+    pub rotation: [f32; 4],
+    pub position: [f32; 3],
+    pub scale: f32,
+    pub first_beam: u32,
+    pub beam_count: u32,
+    pub first_pose: u32,
+    pub padding: u32,
+}
+
+/// Size of a `BeamPose` of the shader: three vec4.
+pub(super) const POSE_BYTES: usize = 48;
 
 /// Rows of `vec4` before the direction map in a slot; `HEADER` of the shader.
 const HEADER: usize = 4;
 
 /// One wind as the shader reads it: header, direction map, responses, velocities.
-pub(crate) fn slot_rows(wind: &WindResponse) -> Vec<[f32; 4]> {
+pub(super) fn slot_rows(wind: &WindResponse) -> Vec<[f32; 4]> {
     let (frame, table, map) = (wind.field.frame(), &wind.table, wind.basis.map());
     let along = frame.along;
     let across = frame.across;
@@ -76,5 +94,6 @@ mod tests {
     fn rows_have_the_sizes_that_the_shader_strides_by() {
         assert_eq!(size_of::<BeamRow>(), 48);
         assert_eq!(size_of::<FrameRow>(), 48);
+        assert_eq!(size_of::<TreeRow>(), 48);
     }
 }

@@ -1,92 +1,180 @@
-//! Sends what changed to the graphics processor: the clock each frame, a wind's tables when a new wind begins.
+//! Sends what changed to the graphics processor: the clock each frame, a wind's tables when a new wind begins, the rows
+//! of trees when trees come or go.
 
 use super::{
     active::{ActiveSway, leaf_clock_s, wrapped_time_s},
+    compute::PoseJob,
     material::SwayMaterial,
     response::WindResponse,
-    rows::{FrameRow, slot_rows},
+    rows::{FrameRow, POSE_BYTES, slot_rows},
+    stand::Stand,
 };
 use crate::wind::WindClock;
-use bevy::{asset::RenderAssetUsages, prelude::*, render::storage::ShaderBuffer};
+use bevy::{asset::RenderAssetUsages, ecs::system::SystemParam, prelude::*, render::storage::ShaderBuffer};
+use bytemuck::Pod;
 use std::sync::Arc;
 
-/// The buffers that all swaying materials share.
+/// The buffers that all trees share.
 #[derive(Resource)]
-pub(super) struct WindBuffers {
-    /// Slots A and B, see [`ActiveSway`].
-    pub slots: [Handle<ShaderBuffer>; 2],
-    /// One [`FrameRow`].
+pub(super) struct StandBuffers {
+    /// Winds of slot A and B, see [`ActiveSway`].
+    pub winds: [Handle<ShaderBuffer>; 2],
+    pub beams: Handle<ShaderBuffer>,
+    pub trees: Handle<ShaderBuffer>,
     pub frame: Handle<ShaderBuffer>,
-    /// What was last sent to each slot, and its size in bytes.
-    sent: [Option<(Arc<WindResponse>, usize)>; 2],
+    /// Two halves, this frame's and the last frame's, which change places each frame.
+    pub poses: Handle<ShaderBuffer>,
+    /// Poses that a half has room for.
+    pose_capacity: u32,
+    /// Whether the first half is this frame's.
+    first_half: bool,
+    /// What was last sent to the slots.
+    sent: [Option<Arc<WindResponse>>; 2],
+    /// What the last frame was posed for: time, and weight of slot B.
+    posed: Option<(f64, f32)>,
+    /// Frames for which materials must still be bound anew.
+    stale_materials: u8,
 }
 
-impl FromWorld for WindBuffers {
+impl FromWorld for StandBuffers {
     fn from_world(world: &mut World) -> Self {
         let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
-        // A slot without a wind is never read (`FrameRow::ready`, weight 0); it only has to be there.
-        let mut empty = |bytes: &[u8]| buffers.add(ShaderBuffer::new(bytes, RenderAssetUsages::RENDER_WORLD));
+        // An empty table is never read; it only has to be there.
+        let mut empty = || buffers.add(ShaderBuffer::new(&[0; 256], RenderAssetUsages::RENDER_WORLD));
         Self {
-            slots: [empty(&[0; 64]), empty(&[0; 64])],
-            frame: empty(bytemuck::bytes_of(&FrameRow::default())),
+            winds: [empty(), empty()],
+            beams: empty(),
+            trees: empty(),
+            frame: empty(),
+            poses: empty(),
+            pose_capacity: 0,
+            first_half: false,
             sent: [None, None],
+            posed: None,
+            stale_materials: 0,
+        }
+    }
+}
+
+/// Buffers and the materials that are bound to them.
+#[derive(SystemParam)]
+pub(super) struct Uploads<'w> {
+    shared: ResMut<'w, StandBuffers>,
+    buffers: ResMut<'w, Assets<ShaderBuffer>>,
+    materials: ResMut<'w, Assets<SwayMaterial>>,
+}
+
+impl Uploads<'_> {
+    /// Writes a whole table. One of another size than before is another buffer, to which materials must be bound anew.
+    fn write<T: Pod>(&mut self, handle: &Handle<ShaderBuffer>, rows: &[T]) {
+        let Some(mut buffer) = self.buffers.get_mut(handle) else { return };
+        let bytes: &[u8] = bytemuck::cast_slice(rows);
+        if buffer.buffer_description.size != bytes.len() as u64 {
+            buffer.buffer_description.size = bytes.len() as u64;
+            self.shared.stale_materials = 2;
+        }
+        buffer.data = Some(bytes.to_vec());
+    }
+
+    /// Makes room for poses: half as many again as are needed, so that a growing stand seldom needs it.
+    fn make_room(&mut self, poses: u32) {
+        if poses <= self.shared.pose_capacity {
+            return;
+        }
+        let capacity = poses + poses / 2;
+        self.shared.pose_capacity = capacity;
+        self.shared.stale_materials = 2;
+        let size = 2 * capacity as usize * POSE_BYTES;
+        if let Some(mut buffer) = self.buffers.get_mut(&self.shared.poses) {
+            *buffer = ShaderBuffer::with_size(size, RenderAssetUsages::RENDER_WORLD);
+        }
+    }
+
+    /// Binds materials to buffers that were replaced: in this frame and once more in the next, since nothing says that a
+    /// buffer is prepared before a material.
+    fn rebind(&mut self) {
+        if self.shared.stale_materials > 0 {
+            self.shared.stale_materials -= 1;
+            // Iterating mutably marks every material as changed.
+            self.materials.iter_mut().for_each(drop);
         }
     }
 }
 
 /// Rewrites a slot when another wind has moved into it; its weight is 0 at that moment.
-pub(super) fn upload_tables(
-    sway: Res<ActiveSway>,
-    mut winds: ResMut<WindBuffers>,
-    mut buffers: ResMut<Assets<ShaderBuffer>>,
-    mut materials: ResMut<Assets<SwayMaterial>>,
-    mut stale_materials: Local<u8>,
-) {
+pub(super) fn upload_winds(sway: Res<ActiveSway>, mut uploads: Uploads) {
     for (slot, response) in sway.slots().into_iter().enumerate() {
         let Some(response) = response else { continue };
-        if winds.sent[slot].as_ref().is_some_and(|(sent, _)| Arc::ptr_eq(sent, response)) {
+        if uploads.shared.sent[slot].as_ref().is_some_and(|sent| Arc::ptr_eq(sent, response)) {
             continue;
         }
-        let rows = slot_rows(response);
-        let bytes: &[u8] = bytemuck::cast_slice(&rows);
-        if let Some(mut buffer) = buffers.get_mut(&winds.slots[slot]) {
-            buffer.data = Some(bytes.to_vec());
-        }
-        if winds.sent[slot].as_ref().is_none_or(|(_, size)| *size != bytes.len()) {
-            *stale_materials = 2;
-        }
-        winds.sent[slot] = Some((response.clone(), bytes.len()));
-    }
-    // A buffer of another size is another buffer: whoever is bound to it must be bound anew, and once more in the next
-    // frame, since nothing says that the buffer is prepared before the material.
-    if *stale_materials > 0 {
-        *stale_materials -= 1;
-        // Iterating mutably marks every material as changed.
-        materials.iter_mut().for_each(drop);
+        let handle = uploads.shared.winds[slot].clone();
+        uploads.write(&handle, &slot_rows(response));
+        uploads.shared.sent[slot] = Some(response.clone());
     }
 }
 
-/// Writes the clock of this frame. In place: the materials that read it do not change.
+/// Sends the rows of trees and beams that have changed, and the clock of this frame.
 pub(super) fn upload_frame(
     sway: Res<ActiveSway>,
     clock: Res<WindClock>,
-    winds: Res<WindBuffers>,
-    mut buffers: ResMut<Assets<ShaderBuffer>>,
+    mut stand: ResMut<Stand>,
+    mut uploads: Uploads,
+    mut job: ResMut<PoseJob>,
 ) {
+    let rows_changed = stand.rows_changed || stand.beams_changed;
+    if rows_changed {
+        let (trees, beams) = (uploads.shared.trees.clone(), uploads.shared.beams.clone());
+        if stand.rows_changed && !stand.rows().is_empty() {
+            uploads.write(&trees, stand.rows());
+        }
+        if stand.beams_changed {
+            uploads.write(&beams, stand.beams());
+        }
+        (stand.rows_changed, stand.beams_changed) = (false, false);
+        uploads.make_room(stand.pose_count());
+    }
+    uploads.rebind();
+
+    let shared = &mut *uploads.shared;
+    let [blend, previous_blend] = sway.blends();
+    shared.first_half = !shared.first_half;
+    job.both = rows_changed || shared.posed != Some((clock.previous_s, previous_blend));
+    shared.posed = Some((clock.time_s, blend));
+    job.trees = stand.rows().len() as u32;
+    job.most_beams = stand.most_beams();
+    let row = frame_row(&sway, &clock, shared, job.trees);
+    let frame = shared.frame.clone();
+    if let Some(mut buffer) = uploads.buffers.get_mut(&frame) {
+        // Extraction takes the bytes away, so a few are allocated anew each frame: 48, whatever the forest.
+        buffer.data = Some(bytemuck::bytes_of(&row).to_vec());
+    }
+}
+
+fn frame_row(sway: &ActiveSway, clock: &WindClock, shared: &StandBuffers, trees: u32) -> FrameRow {
     let [a, b] = sway.slots();
     let seconds = |slot: Option<&Arc<WindResponse>>, time_s: f64| {
         slot.map_or(0.0, |response| wrapped_time_s(response, time_s) as f32)
     };
     let (now, before) = (clock.time_s, clock.previous_s);
-    let row = FrameRow {
+    let halves = if shared.first_half { [0, shared.pose_capacity] } else { [shared.pose_capacity, 0] };
+    FrameRow {
         time_s: [seconds(a, now), seconds(b, now), seconds(a, before), seconds(b, before)],
         blend: sway.blends(),
         leaf_time_s: [leaf_clock_s(now), leaf_clock_s(before)],
-        ready: if sway.is_ready() { 1.0 } else { 0.0 },
-        padding: [0.0; 3],
-    };
-    if let Some(mut buffer) = buffers.get_mut(&winds.frame) {
-        // Extraction takes the bytes away, so a few are allocated anew each frame: 48, whatever the forest.
-        buffer.data = Some(bytemuck::bytes_of(&row).to_vec());
+        poses_now: halves[0],
+        poses_before: halves[1],
+        ready: u32::from(sway.is_ready()),
+        tree_count: trees,
+    }
+}
+
+impl FromWorld for PoseJob {
+    fn from_world(world: &mut World) -> Self {
+        let shared = world.resource::<StandBuffers>();
+        let [a, b] = shared.winds.clone();
+        let buffers =
+            [a, b, shared.beams.clone(), shared.trees.clone(), shared.frame.clone(), shared.poses.clone()];
+        Self { buffers, trees: 0, most_beams: 0, both: true }
     }
 }

@@ -2,7 +2,7 @@
 
 #define_import_path bevy_windwood::leaf
 
-#import bevy_windwood::pose::then
+#import bevy_windwood::beam::then
 
 // One species' `LeafResponse`.
 struct LeafResponse {

@@ -4,7 +4,7 @@
 
 #import bevy_pbr::mesh_functions
 #import bevy_pbr::view_transformations::position_world_to_clip
-#import bevy_windwood::pose
+#import bevy_windwood::beam
 
 #ifdef WINDWOOD_LEAVES
 #import bevy_windwood::leaf
@@ -31,38 +31,42 @@ struct Vertex {
 #endif
 }
 
-// The instance tag: the first row of the model in the beam table, and a tint of its own above it.
-const BEAM_BITS: u32 = 24u;
+@group(#{MATERIAL_BIND_GROUP}) @binding(100) var<storage, read> poses: array<beam::BeamPose>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(101) var<storage, read> beams: array<beam::BeamRow>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(102) var<storage, read> trees: array<beam::TreeRow>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(103) var<storage, read> frame: beam::Frame;
 
-fn instance_at(world_from_local: mat4x4<f32>, tag: u32) -> pose::Instance {
-    return pose::instance_from_matrix(world_from_local, tag & ((1u << BEAM_BITS) - 1u));
+// The instance tag: the tree's row, and a tint of its own above it.
+const TREE_BITS: u32 = 24u;
+
+fn tree_of(tag: u32) -> beam::TreeRow {
+    return trees[tag & ((1u << TREE_BITS) - 1u)];
 }
 
 // The vertex where the wind has it, in tree-local space.
-fn swayed(vertex: Vertex, instance: pose::Instance, frames_ago: u32) -> pose::Motion {
-    let moment = pose::moment(instance, frames_ago);
-    let beam = u32(vertex.sway.x + 0.5);
+fn swayed(in: Vertex, tree: beam::TreeRow, first_pose: u32, leaf_time_s: f32) -> beam::Motion {
+    let index = u32(in.sway.x + 0.5);
+    let row = beams[tree.first_beam + index];
+    let pose = poses[first_pose + tree.first_pose + index];
 #ifdef WINDWOOD_LEAVES
     // The bough carries the anchor and the leaf as it rests; the leaf then turns about the anchor.
-    let carried = pose::pose_point(instance, moment, beam, vertex.sway.y, vertex.anchor.xyz);
-    let wind = pose::wind_velocity(moment) * instance.rotation;
-    let axis = pose::rotate(carried.rotation, vertex.axis.xyz);
-    let turn = leaf::turn(axis, wind, pose::leaf_seconds(frames_ago), vertex.sway.z);
-    let rotation = pose::then(carried.rotation, turn);
-    let arm = pose::rotate(rotation, vertex.position - vertex.anchor.xyz);
-    return pose::Motion(carried.position + arm, rotation);
+    let carried = beam::carry(row, pose, in.sway.y, in.anchor.xyz);
+    let wind = poses[first_pose + tree.first_pose + tree.beam_count].tip_angle.xyz;
+    let turn = leaf::turn(beam::rotate(carried.rotation, in.axis.xyz), wind, leaf_time_s, in.sway.z);
+    let rotation = beam::then(carried.rotation, turn);
+    return beam::Motion(carried.position + beam::rotate(rotation, in.position - in.anchor.xyz), rotation);
 #else
-    return pose::pose_point(instance, moment, beam, vertex.sway.y, vertex.position);
+    return beam::carry(row, pose, in.sway.y, in.position);
 #endif
 }
 
 @vertex
-fn vertex(vertex: Vertex) -> VertexOutput {
+fn vertex(in: Vertex) -> VertexOutput {
     var out: VertexOutput;
-    let world_from_local = mesh_functions::get_world_from_local(vertex.instance_index);
-    let tag = mesh_functions::get_tag(vertex.instance_index);
-    let instance = instance_at(world_from_local, tag);
-    let now = swayed(vertex, instance, 0u);
+    let world_from_local = mesh_functions::get_world_from_local(in.instance_index);
+    let tag = mesh_functions::get_tag(in.instance_index);
+    let tree = tree_of(tag);
+    let now = swayed(in, tree, frame.poses_now, frame.leaf_time.x);
 
     out.world_position = world_from_local * vec4(now.position, 1.0);
     out.position = position_world_to_clip(out.world_position.xyz);
@@ -72,49 +76,49 @@ fn vertex(vertex: Vertex) -> VertexOutput {
 #endif
 
 #ifdef VERTEX_UVS_A
-    out.uv = vertex.uv;
+    out.uv = in.uv;
 #endif
 
-    let normal = instance.rotation * pose::rotate(now.rotation, vertex.normal);
+    let normal = beam::rotate(beam::then(now.rotation, tree.rotation), in.normal);
 #ifdef PREPASS_PIPELINE
 #ifdef NORMAL_PREPASS_OR_DEFERRED_PREPASS
     out.world_normal = normal;
 #ifdef VERTEX_TANGENTS
-    out.world_tangent = bark_tangent(vertex, instance, now, normal);
+    out.world_tangent = bark_tangent(in, tree, now, normal);
 #endif
 #endif
 #else
     out.world_normal = normal;
 #ifdef VERTEX_TANGENTS
-    out.world_tangent = bark_tangent(vertex, instance, now, normal);
+    out.world_tangent = bark_tangent(in, tree, now, normal);
 #endif
 #endif
 
 #ifdef VERTEX_COLORS
-    out.color = vec4(shade(vertex, tag), 1.0);
+    out.color = vec4(shade(in, tag), 1.0);
 #endif
 
 #ifdef MOTION_VECTOR_PREPASS
-    let before_from_local = mesh_functions::get_previous_world_from_local(vertex.instance_index);
-    let before = swayed(vertex, instance_at(before_from_local, tag), 1u);
+    let before_from_local = mesh_functions::get_previous_world_from_local(in.instance_index);
+    let before = swayed(in, tree, frame.poses_before, frame.leaf_time.y);
     out.previous_world_position = before_from_local * vec4(before.position, 1.0);
 #endif
 
 #ifdef VERTEX_OUTPUT_INSTANCE_INDEX
-    out.instance_index = vertex.instance_index;
+    out.instance_index = in.instance_index;
 #endif
 #ifdef VISIBILITY_RANGE_DITHER
     out.visibility_range_dither =
-        mesh_functions::get_visibility_range_dither_level(vertex.instance_index, world_from_local[3]);
+        mesh_functions::get_visibility_range_dither_level(in.instance_index, world_from_local[3]);
 #endif
     return out;
 }
 
 #ifdef VERTEX_TANGENTS
 // Bark is wound around its beam: u runs around, v along, so the tangent needs no vertex attribute.
-fn bark_tangent(vertex: Vertex, instance: pose::Instance, now: pose::Motion, normal: vec3<f32>) -> vec4<f32> {
-    let row = pose::beams[instance.first_beam + u32(vertex.sway.x + 0.5)];
-    let along = instance.rotation * pose::rotate(now.rotation, row.direction.xyz);
+fn bark_tangent(in: Vertex, tree: beam::TreeRow, now: beam::Motion, normal: vec3<f32>) -> vec4<f32> {
+    let row = beams[tree.first_beam + u32(in.sway.x + 0.5)];
+    let along = beam::rotate(beam::then(now.rotation, tree.rotation), row.direction);
     let around = cross(along, normal);
     let fallback = cross(along, vec3(0.36, 0.48, 0.8));
     let flat = dot(around, around) < 1e-6;
@@ -124,15 +128,14 @@ fn bark_tangent(vertex: Vertex, instance: pose::Instance, now: pose::Motion, nor
 
 #ifdef VERTEX_COLORS
 // Light lost in the crown, and the natural variation between trees and between leaves.
-fn shade(vertex: Vertex, tag: u32) -> vec3<f32> {
-    let light = mix(0.35, 1.0, vertex.sway.w);
+fn shade(in: Vertex, tag: u32) -> vec3<f32> {
 #ifdef WINDWOOD_LEAVES
-    let own = f32(tag >> BEAM_BITS) / 255.0 - 0.5;
-    let leaf_tint = vertex.axis.w - 0.5;
-    let warm = vec3(1.0 + 0.35 * own + 0.22 * leaf_tint, 1.0 + 0.12 * own + 0.12 * leaf_tint, 1.0 - 0.25 * own);
-    return light * warm;
+    let own = f32(tag >> TREE_BITS) / 255.0 - 0.5;
+    let light = (0.25 + 0.75 * in.sway.w) * (0.85 + 0.35 * in.axis.w);
+    let warmth = in.axis.w + own;
+    return light * vec3(0.92 + 0.2 * warmth, 1.0 + 0.06 * own, 1.05 - 0.25 * warmth);
 #else
-    return vec3(light);
+    return vec3(0.5 + 0.5 * in.sway.w);
 #endif
 }
 #endif
