@@ -11,7 +11,7 @@ use std::path::Path;
 /// The shipped elevations: Rocky Mountain National Park, see `assets/terrain/README.md`.
 const SHIPPED: &[u8] = include_bytes!("../../assets/terrain/rmnp-dem-16bit.png");
 /// Where in the shipped elevations the forest stands, as shares of the map's width and height: a slope by a valley.
-const SHIPPED_PLACE: Vec2 = Vec2::new(0.62, 0.44);
+const SHIPPED_PLACE: Vec2 = Vec2::new(0.675, 0.2366);
 
 /// Elevations on a grid, interpolated so that the slope has no kinks.
 pub struct Ground {

@@ -6,6 +6,7 @@ use crate::{
 };
 use bevy::{
     camera::RenderTarget,
+    core_pipeline::prepass::DepthPrepass,
     prelude::*,
     render::{
         render_resource::{PollType, TextureFormat},
@@ -25,6 +26,9 @@ use std::{
 
 /// Longest that wind and trees may take to get ready.
 const PATIENCE: Duration = Duration::from_secs(600);
+
+/// Frames that are drawn before the first picture.
+const WARM_UP_FRAMES: usize = 3;
 
 /// Renders the pictures that the options ask for.
 pub fn render(mut app: App, options: &Options) -> ExitCode {
@@ -54,22 +58,21 @@ fn run(app: &mut App, options: &Options) -> Result<(), String> {
         }
         std::thread::sleep(Duration::from_millis(5));
     }
-    // Two frames more: meshes and tables that were added last are prepared, and there is a frame before.
-    step(app, Duration::ZERO);
-    step(app, Duration::ZERO);
+    // Pipelines and instances of what is seen for the first time take frames of their own.
+    (0..WARM_UP_FRAMES).for_each(|_| step(app));
     println!("ready after {:.1} s", begun.elapsed().as_secs_f32());
 
-    app.world_mut().resource_mut::<WindClock>().time_s = options.start;
     let mut pictures = Vec::new();
     for frame in 0..options.frames {
-        let picture = capture(app, &target)?;
+        let time_s = options.start + f64::from(frame) * options.interval;
+        *app.world_mut().resource_mut::<WindClock>() = WindClock { time_s, previous_s: time_s };
+        let picture = capture(app, options, &target)?;
         let path = options.out.join(format!("forest_{frame:03}.png"));
         save(&picture, &path)?;
         println!("{} after {:.1} s", path.display(), begun.elapsed().as_secs_f32());
         if options.strip {
             pictures.push(picture);
         }
-        step(app, Duration::from_secs_f64(options.interval));
     }
     if options.strip {
         save(&strip(&pictures), &options.out.join("strip.png"))?;
@@ -80,11 +83,15 @@ fn run(app: &mut App, options: &Options) -> Result<(), String> {
 fn spawn_camera(app: &mut App, options: &Options) -> Handle<Image> {
     let world = app.world_mut();
     let (width, height) = options.size;
+    let (width, height) = (width * options.supersample, height * options.supersample);
     let image = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
     let target = world.resource_mut::<Assets<Image>>().add(image);
     let transform = camera_transform(world.resource::<Setting>());
     world.spawn((
         Camera3d::default(),
+        // Software Vulkan shades every sample of every small triangle: more pixels are cheaper than more samples.
+        Msaa::Off,
+        DepthPrepass,
         Projection::Perspective(PerspectiveProjection { far: 60_000.0, ..default() }),
         RenderTarget::Image(target.clone().into()),
         transform,
@@ -107,8 +114,7 @@ fn is_ready(app: &mut App, options: &Options) -> Result<bool, String> {
 }
 
 /// One frame, rendered to the end.
-fn step(app: &mut App, duration: Duration) {
-    app.insert_resource(TimeUpdateStrategy::ManualDuration(duration));
+fn step(app: &mut App) {
     app.update();
     let poll = PollType::Wait { submission_index: None, timeout: None };
     if let Err(error) = app.world().resource::<RenderDevice>().wgpu_device().poll(poll) {
@@ -116,7 +122,7 @@ fn step(app: &mut App, duration: Duration) {
     }
 }
 
-fn capture(app: &mut App, target: &Handle<Image>) -> Result<RgbaImage, String> {
+fn capture(app: &mut App, options: &Options, target: &Handle<Image>) -> Result<RgbaImage, String> {
     let slot: Arc<Mutex<Option<Image>>> = Arc::default();
     let filled = slot.clone();
     app.world_mut().spawn(Screenshot::image(target.clone())).observe(move |captured: On<ScreenshotCaptured>| {
@@ -125,11 +131,12 @@ fn capture(app: &mut App, target: &Handle<Image>) -> Result<RgbaImage, String> {
         }
     });
     for _ in 0..16 {
-        step(app, Duration::ZERO);
+        step(app);
         let taken = slot.lock().ok().and_then(|mut slot| slot.take());
         if let Some(image) = taken {
             let dynamic = image.try_into_dynamic().map_err(|error| error.to_string())?;
-            return Ok(dynamic.to_rgba8());
+            let (width, height) = options.size;
+            return Ok(image::imageops::thumbnail(&dynamic.to_rgba8(), width, height));
         }
     }
     Err("the picture did not come back from the graphics device".into())

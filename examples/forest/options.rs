@@ -34,6 +34,9 @@ pub struct Options {
     /// Size of a picture or of the window.
     #[arg(long, default_value = "960x540", value_parser = size)]
     pub size: (u32, u32),
+    /// Renders pictures so many times as wide and high and scales them down.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=4))]
+    pub supersample: u32,
     /// Folder for the pictures.
     #[arg(long, default_value = "out")]
     pub out: PathBuf,
@@ -81,7 +84,7 @@ fn in_range(text: &str, low: f32, high: f32, unit: &str) -> Result<f32, String> 
 fn size(text: &str) -> Result<(u32, u32), String> {
     let parts = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
     match parts {
-        Some((width, height)) if (1..=8192).contains(&width) && (1..=8192).contains(&height) => Ok((width, height)),
-        _ => Err("expected WIDTHxHEIGHT, each from 1 to 8192".to_owned()),
+        Some((width, height)) if (1..=4096).contains(&width) && (1..=4096).contains(&height) => Ok((width, height)),
+        _ => Err("expected WIDTHxHEIGHT, each from 1 to 4096".to_owned()),
     }
 }
