@@ -35,7 +35,7 @@ pub struct Options {
     #[arg(long, default_value = "960x540", value_parser = size)]
     pub size: (u32, u32),
     /// Renders pictures so many times as wide and high and scales them down.
-    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=4))]
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=4))]
     pub supersample: u32,
     /// Folder for the pictures.
     #[arg(long, default_value = "out")]

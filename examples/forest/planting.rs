@@ -43,7 +43,7 @@ pub fn places(ground: &Ground, trees: u32, seed: u64) -> Vec<Place> {
         }
         grid.take(at);
         let drift = drifts.get([at.x, at.y].map(|c| f64::from(c / DRIFT_M))) as f32;
-        let is_fir = at.dot(*uphill) / half + 1.6 * drift + random.random_range(-0.25..0.25) > 0.05;
+        let is_fir = 0.8 * at.dot(*uphill) / half + 1.6 * drift + random.random_range(-0.25..0.25) > -0.1;
         let scale = if is_fir { random.random_range(0.6..1.15) } else { random.random_range(0.7..1.1) };
         places.push(Place {
             transform: Transform::from_xyz(at.x, ground.height_m(at.x, at.y) - 0.15, at.y)

@@ -25,8 +25,8 @@ pub struct Setting {
 /// Direction to the sun: mid-afternoon, over the viewer's right shoulder.
 const SUN: Vec3 = Vec3::new(0.55, 0.62, 0.25);
 const HAZE: Color = Color::srgb(0.69, 0.78, 0.88);
-const ZENITH: Vec3 = Vec3::new(0.10, 0.25, 0.60);
-const HORIZON: Vec3 = Vec3::new(0.52, 0.66, 0.83);
+const ZENITH: Vec3 = Vec3::new(0.13, 0.32, 0.78);
+const HORIZON: Vec3 = Vec3::new(0.75, 0.90, 1.05);
 
 /// The wind blows across the view, a little up the slope.
 pub fn wind_direction(ground: &Ground) -> Dir2 {
@@ -60,7 +60,7 @@ pub fn haze() -> DistanceFog {
         color: HAZE,
         directional_light_color: Color::srgba(1.0, 0.9, 0.7, 0.25),
         directional_light_exponent: 12.0,
-        falloff: FogFalloff::ExponentialSquared { density: 1.0 / 7500.0 },
+        falloff: FogFalloff::ExponentialSquared { density: 1.0 / 6500.0 },
     }
 }
 

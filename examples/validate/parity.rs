@@ -1,5 +1,265 @@
-use crate::report::Report;
+//! The posed vertices of the graphics processor against the processor's.
+//!
+//! A whole oak in a storm stands turned, scaled and far from the origin. The drawing plugin poses it on the graphics
+//! processor; a compute shader then carries every vertex with the same shader module that draws it, and the positions are
+//! read back. The processor poses the same tree with `TreePoser` from the same tables.
 
+use crate::report::Report;
+use bevy::{
+    core_pipeline::schedule::camera_driver,
+    log::LogPlugin,
+    prelude::*,
+    render::{
+        RenderApp, RenderPlugin,
+        extract_resource::{ExtractResource, ExtractResourcePlugin},
+        gpu_readback::{Readback, ReadbackComplete},
+        render_asset::RenderAssets,
+        render_resource::{
+            BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedComputePipelineId,
+            ComputePassDescriptor, ComputePipelineDescriptor, PipelineCache, ShaderStages,
+            binding_types::{storage_buffer_read_only_sized, storage_buffer_sized},
+        },
+        renderer::{RenderContext, RenderDevice, RenderGraph},
+        storage::{GpuShaderBuffer, ShaderBuffer},
+    },
+    shader::Shader,
+    time::TimeUpdateStrategy,
+    window::ExitCondition,
+    winit::WinitPlugin,
+};
+use bevy_windwood::{
+    dynamics::{BeamPose, TreePoser},
+    prelude::*,
+    sway::StandTables,
+    tree::TreeModel,
+};
+use std::{
+    sync::{Arc, Mutex},
+    time::Duration,
+};
+
+/// Where the tree stands: nothing is special about it.
+const STANDS: Transform = Transform {
+    translation: Vec3::new(413.0, 21.0, -178.0),
+    rotation: Quat::from_xyzw(0.0, 0.479_425_55, 0.0, 0.877_582_55),
+    scale: Vec3::splat(0.83),
+};
+const STORM_M_S: f32 = 28.0;
+const MOMENTS_S: [f64; 3] = [3.7, 61.3, 1000.1];
+
+const CARRY_SHADER: &str = "
+#import bevy_windwood::beam::{BeamPose, BeamRow, Frame, TreeRow, carry}
+@group(0) @binding(0) var<storage, read> poses: array<BeamPose>;
+@group(0) @binding(1) var<storage, read> beams: array<BeamRow>;
+@group(0) @binding(2) var<storage, read> trees: array<TreeRow>;
+@group(0) @binding(3) var<storage, read> frame: Frame;
+@group(0) @binding(4) var<storage, read> points: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read_write> carried: array<vec4<f32>>;
+// A vertex is two rows of `points`: place at rest and beam; place on the beam.
+@compute @workgroup_size(64)
+fn carry_points(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&carried) {
+        return;
+    }
+    let point = points[2u * id.x];
+    let beam = u32(point.w + 0.5);
+    let pose = poses[frame.poses_now + trees[0].first_pose + beam];
+    let motion = carry(beams[trees[0].first_beam + beam], pose, points[2u * id.x + 1u].x, point.xyz);
+    carried[id.x] = vec4(motion.position, 1.0);
+}
+";
+
+/// Poses a tree on both sides and compares every vertex.
 pub fn run() -> Report {
-    Report::default()
+    let mut report = Report::default();
+    match worst_differences() {
+        Ok((worst, largest)) => {
+            report.at_most("cpu_gpu_worst", worst, 1e-3, "largest distance between the two, in tree heights");
+            report.tell("largest_deflection", largest, "how far the storm moves a vertex, in tree heights");
+        }
+        Err(error) => {
+            eprintln!("parity: {error}");
+            report.at_most("cpu_gpu_worst", f64::NAN, 1e-3, "could not be measured");
+        }
+    }
+    report
+}
+
+#[derive(Resource, ExtractResource, Clone)]
+struct Probe {
+    points: Handle<ShaderBuffer>,
+    carried: Handle<ShaderBuffer>,
+    shader: Handle<Shader>,
+    tables: StandTables,
+    vertices: u32,
+}
+
+#[derive(Resource)]
+struct CarryPipeline(BindGroupLayoutDescriptor, CachedComputePipelineId);
+
+fn worst_differences() -> Result<(f64, f64), String> {
+    let mut app = headless_app();
+    let tree = app.world().resource::<AssetServer>().load("species/oak.species.ron");
+    let tree = app.world_mut().spawn((Tree::new(tree).with_seed(1), STANDS)).id();
+    let mut patience = 2000;
+    while !(app.world().resource::<ActiveSway>().is_ready() && app.world().get::<Mesh3d>(tree).is_some()) {
+        app.update();
+        patience -= 1;
+        if patience == 0 {
+            return Err("the tree did not get ready".into());
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let model = app.world().get::<Grown>(tree).map(|grown| grown.model.clone()).ok_or("the tree has no model")?;
+    let model = app.world().resource::<Assets<TreeModel>>().get(&model).cloned().ok_or("the model is gone")?;
+    let vertices = bound_points(&model);
+    let read = install_probe(&mut app, &vertices);
+
+    let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
+    for time_s in MOMENTS_S {
+        *app.world_mut().resource_mut::<WindClock>() = WindClock { time_s, previous_s: time_s };
+        let posed = processor_poses(app.world().resource::<ActiveSway>(), &model, time_s);
+        let carried = read_back(&mut app, &read, vertices.len())?;
+        for (vertex, there) in vertices.iter().zip(carried) {
+            let (here, _) = posed[vertex.beam].carry(&model.beams[vertex.beam], vertex.s, vertex.at);
+            worst = worst.max(f64::from(here.distance(there)));
+            largest = largest.max(f64::from(here.distance(vertex.at)));
+        }
+    }
+    let height_m = f64::from(model.height_m());
+    Ok((worst / height_m, largest / height_m))
+}
+
+fn headless_app() -> App {
+    let mut app = App::new();
+    let plugins = DefaultPlugins
+        .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
+        .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
+        .set(LogPlugin { filter: "error".into(), ..default() })
+        .disable::<bevy::render::pipelined_rendering::PipelinedRenderingPlugin>()
+        .disable::<WinitPlugin>();
+    app.add_plugins((plugins, WindwoodPlugins))
+        .insert_resource(Wind { speed: STORM_M_S, seed: 3, ..default() })
+        .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO))
+        .add_plugins(ExtractResourcePlugin::<Probe>::default());
+    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+        render_app.add_systems(RenderGraph, carry_points.before(camera_driver));
+    }
+    app.finish();
+    app.cleanup();
+    app
+}
+
+/// A vertex at rest and what it is bound to.
+struct BoundPoint {
+    at: Vec3,
+    beam: usize,
+    s: f32,
+}
+
+/// All vertices of the wood, and the anchors of the leaves.
+fn bound_points(model: &TreeModel) -> Vec<BoundPoint> {
+    let point = |at: Vec3, sway: &[f32; 4]| BoundPoint { at, beam: sway[0] as usize, s: sway[1] };
+    let wood = model.wood.positions.iter().zip(&model.wood.sway).map(|(at, sway)| point(Vec3::from_array(*at), sway));
+    let leaves = model.leaves.anchor.iter().zip(&model.leaves.sway);
+    wood.chain(leaves.map(|(at, sway)| point(Vec3::from_slice(at), sway))).collect()
+}
+
+/// The same tree posed by the processor.
+fn processor_poses(sway: &ActiveSway, model: &TreeModel, time_s: f64) -> Vec<BeamPose> {
+    let mut poses = vec![BeamPose::REST; model.beams.len()];
+    if let Some(wind) = sway.now().next().map(|wind| wind.response) {
+        let frame = wind.field.frame();
+        let to_wind = Quat::from_mat3(&Mat3::from_cols(frame.along, Vec3::Y, frame.across)).inverse() * STANDS.rotation;
+        let classes = &wind.table.classes;
+        let poser = TreePoser::new(&model.beams, wind.basis.map(), classes, to_wind, STANDS.scale.y);
+        let (column, tau_s) = wind.place(STANDS.translation, time_s);
+        let mut responses = vec![Vec4::ZERO; classes.count];
+        wind.table.responses(column, tau_s, &mut responses);
+        poser.pose(&responses, &mut poses);
+    }
+    poses
+}
+
+type ReadBack = Arc<Mutex<Option<Vec<u8>>>>;
+
+fn install_probe(app: &mut App, vertices: &[BoundPoint]) -> ReadBack {
+    let rows: Vec<Vec4> =
+        vertices.iter().flat_map(|v| [v.at.extend(v.beam as f32), Vec4::new(v.s, 0.0, 0.0, 0.0)]).collect();
+    let read = ReadBack::default();
+    let world = app.world_mut();
+    let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wgsl(CARRY_SHADER, "carry_points.wgsl"));
+    let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
+    let points = buffers.add(ShaderBuffer::from(rows));
+    let carried = buffers.add(ShaderBuffer::from(vec![Vec4::ZERO; vertices.len()]));
+    let tables = world.resource::<StandTables>().clone();
+    let filled = read.clone();
+    world.spawn(Readback::buffer(carried.clone())).observe(move |complete: On<ReadbackComplete>| {
+        if let Ok(mut slot) = filled.lock() {
+            *slot = Some(complete.data.clone());
+        }
+    });
+    world.insert_resource(Probe { points, carried, shader, tables, vertices: vertices.len() as u32 });
+    read
+}
+
+/// Lets the frames of a moment run until what was read is surely of that moment.
+fn read_back(app: &mut App, read: &ReadBack, count: usize) -> Result<Vec<Vec3>, String> {
+    const SETTLE_FRAMES: usize = 6;
+    for _ in 0..SETTLE_FRAMES {
+        app.update();
+        let poll = bevy::render::render_resource::PollType::Wait { submission_index: None, timeout: None };
+        app.world().resource::<RenderDevice>().wgpu_device().poll(poll).map_err(|error| error.to_string())?;
+    }
+    let bytes = read.lock().ok().and_then(|mut slot| slot.take()).ok_or("nothing was read back")?;
+    let floats: Vec<f32> = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+    let points: Vec<Vec3> = floats.chunks_exact(4).map(Vec3::from_slice).collect();
+    if points.len() == count && floats.iter().skip(3).step_by(4).all(|w| *w == 1.0) {
+        Ok(points)
+    } else {
+        Err("the graphics processor did not write every vertex".into())
+    }
+}
+
+fn carry_points(
+    mut context: RenderContext,
+    mut commands: Commands,
+    probe: Option<Res<Probe>>,
+    pipeline: Option<Res<CarryPipeline>>,
+    buffers: Res<RenderAssets<GpuShaderBuffer>>,
+    device: Res<RenderDevice>,
+    cache: Res<PipelineCache>,
+) {
+    let Some(probe) = probe else { return };
+    let Some(pipeline) = pipeline else {
+        commands.insert_resource(queue_pipeline(&probe, &cache));
+        return;
+    };
+    let Some(compute) = cache.get_compute_pipeline(pipeline.1) else { return };
+    let StandTables { poses, beams, trees, frame } = &probe.tables;
+    let bound = [poses, beams, trees, frame, &probe.points, &probe.carried].map(|handle| buffers.get(handle));
+    let [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)] = bound else { return };
+    let [a, b, c, d, e, f] = [a, b, c, d, e, f].map(|buffer| buffer.buffer.as_entire_buffer_binding());
+    let layout = cache.get_bind_group_layout(&pipeline.0);
+    let group = device.create_bind_group("carry", &layout, &BindGroupEntries::sequential((a, b, c, d, e, f)));
+    let descriptor = ComputePassDescriptor { label: Some("carry"), timestamp_writes: None };
+    let mut pass = context.command_encoder().begin_compute_pass(&descriptor);
+    pass.set_pipeline(compute);
+    pass.set_bind_group(0, &group, &[]);
+    pass.dispatch_workgroups(probe.vertices.div_ceil(64), 1, 1);
+}
+
+fn queue_pipeline(probe: &Probe, cache: &PipelineCache) -> CarryPipeline {
+    let table = || storage_buffer_read_only_sized(false, None);
+    let entries = (table(), table(), table(), table(), table(), storage_buffer_sized(false, None));
+    let layout =
+        BindGroupLayoutDescriptor::new("carry", &BindGroupLayoutEntries::sequential(ShaderStages::COMPUTE, entries));
+    let id = cache.queue_compute_pipeline(ComputePipelineDescriptor {
+        label: Some("carry".into()),
+        layout: vec![layout.clone()],
+        shader: probe.shader.clone(),
+        entry_point: Some("carry_points".into()),
+        ..default()
+    });
+    CarryPipeline(layout, id)
 }

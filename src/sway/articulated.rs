@@ -157,7 +157,14 @@ pub(super) fn turn_leaves(
         let stands = if is_child { global.compute_transform() } else { *tree_transform };
         let (anchor, carried) = beam_pose.carry(rest, cluster.at, cluster.anchor);
         let axis = carried * cluster.axis;
-        let turn = leaf::turn(&species.species.foliage.response, axis, pose.wind, seconds, FLUTTER_PERIOD_S as f32, cluster.phase);
+        let turn = leaf::turn(
+            &species.species.foliage.response,
+            axis,
+            pose.wind,
+            seconds,
+            FLUTTER_PERIOD_S as f32,
+            cluster.phase,
+        );
         let upright = Quat::from_rotation_arc(Vec3::Y, cluster.axis);
         *transform = stands * Transform::from_translation(anchor).with_rotation(turn * carried * upright);
     });

@@ -77,7 +77,8 @@ pub(super) fn dress_trees(
         if let Some(standing) = standing {
             tree.insert(standing);
         }
-        let wood = Draw { mesh: &variant.wood, outfit: &looks.bark, sways: standing.is_some(), tag: tag.clone(), variant };
+        let wood =
+            Draw { mesh: &variant.wood, outfit: &looks.bark, sways: standing.is_some(), tag: tag.clone(), variant };
         wood.put_on(commands.entity(entity), *path);
         if let Some(leaves) = &variant.leaves {
             let leaves = Draw { mesh: leaves, outfit: &looks.foliage, sways: standing.is_some(), tag, variant };

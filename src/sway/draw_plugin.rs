@@ -8,7 +8,7 @@ use super::{
     material::SwayMaterial,
     rows::POSE_BYTES,
     stand::{Stand, dismiss_tree, place_trees},
-    upload::{StandBuffers, upload_frame, upload_winds},
+    upload::{StandBuffers, StandTables, upload_frame, upload_winds},
 };
 use crate::{schedule::WindwoodSystems, tree::receive_models};
 use bevy::{
@@ -41,6 +41,7 @@ impl Plugin for SwayDrawPlugin {
         embedded_asset!(app, "shaders/sway.wgsl");
         app.add_plugins((MaterialPlugin::<SwayMaterial>::default(), compute::plugin))
             .init_resource::<StandBuffers>()
+            .init_resource::<StandTables>()
             .init_resource::<PoseJob>()
             .init_resource::<Stand>()
             .init_resource::<Tailoring>()
@@ -75,7 +76,7 @@ impl Plugin for SwayDrawPlugin {
             .get_resource::<GpuPreprocessingSupport>()
             .is_some_and(|support| support.max_supported_mode == GpuPreprocessingMode::Culling);
         // Poses have two halves, and half as many again are kept ready.
-        let largest = u64::from(device.limits().max_storage_buffer_binding_size).min(device.limits().max_buffer_size);
+        let largest = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size);
         let pose_limit = u32::try_from(largest / (3 * POSE_BYTES as u64)).unwrap_or(u32::MAX);
         app.insert_resource(DrawPath { sways, culls_on_gpu, pose_limit });
     }

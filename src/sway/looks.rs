@@ -21,9 +21,7 @@ use bevy::{
     image::{ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor},
     mesh::{Indices, PrimitiveTopology},
     prelude::*,
-    render::{
-        render_resource::{Extent3d, TextureDimension, TextureFormat},
-    },
+    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
 };
 
@@ -156,11 +154,7 @@ impl Atelier<'_> {
         };
         let bark = self.bark_material(&cut.bark);
         let foliage = self.foliage_material(&entry.species, &cut.leaf);
-        SpeciesLooks {
-            bark: self.outfit(bark, extension.clone()),
-            foliage: self.outfit(foliage, extension),
-            variants,
-        }
+        SpeciesLooks { bark: self.outfit(bark, extension.clone()), foliage: self.outfit(foliage, extension), variants }
     }
 
     fn outfit(&mut self, base: StandardMaterial, extension: SwayExtension) -> Outfit {
@@ -194,6 +188,10 @@ impl Atelier<'_> {
     }
 }
 
+/// Coarsest mip of masked foliage that is used: beyond it a spray is a few texels, between which no alpha passes the mask,
+/// and distant crowns would go bare.
+const FOLIAGE_LOD_LIMIT: f32 = 3.0;
+
 fn image(texture: &TextureData, address_mode: ImageAddressMode) -> Image {
     let format = if texture.srgb { TextureFormat::Rgba8UnormSrgb } else { TextureFormat::Rgba8Unorm };
     let size = Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: 1 };
@@ -206,6 +204,8 @@ fn image(texture: &TextureData, address_mode: ImageAddressMode) -> Image {
         mag_filter: ImageFilterMode::Linear,
         min_filter: ImageFilterMode::Linear,
         mipmap_filter: ImageFilterMode::Linear,
+        // Only foliage is clamped at its edges, and only foliage is masked.
+        lod_max_clamp: if address_mode == ImageAddressMode::ClampToEdge { FOLIAGE_LOD_LIMIT } else { 32.0 },
         ..default()
     });
     image

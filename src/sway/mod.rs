@@ -38,4 +38,5 @@ pub use response::{SwaySettings, WindResponse};
 pub use {
     draw::{DrawPath, Foliage},
     draw_plugin::SwayDrawPlugin,
+    upload::StandTables,
 };

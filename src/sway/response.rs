@@ -25,7 +25,7 @@ pub struct SwaySettings {
 
 impl Default for SwaySettings {
     fn default() -> Self {
-        Self { basis: LoadBasisKind::default(), damping_ratio: 0.12, reference_height_m: REFERENCE_HEIGHT_M }
+        Self { basis: LoadBasisKind::default(), damping_ratio: 0.15, reference_height_m: REFERENCE_HEIGHT_M }
     }
 }
 

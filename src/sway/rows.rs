@@ -1,6 +1,7 @@
 //! The tables as the shaders read them. Each layout here has its twin in `shaders/beam.wgsl` or `shaders/pose.wgsl`.
 
 use crate::{dynamics::pose::BeamDynamics, sway::response::WindResponse};
+use bevy::math::Vec4;
 use bytemuck::{Pod, Zeroable};
 
 /// `BeamRow` of the shader: one beam of a model.
@@ -81,8 +82,8 @@ pub(super) fn slot_rows(wind: &WindResponse) -> Vec<[f32; 4]> {
     rows.push([table.classes.count as f32, table.columns as f32, table.samples as f32, table.time_step_s]);
     rows.push([map.size() as f32, 1.0 / table.classes.ratio.ln(), 0.0, 0.0]);
     rows.extend_from_slice(bytemuck::cast_slice(map.texels()));
-    rows.extend(table.values.iter().map(|value| value.to_array()));
-    rows.extend(table.velocities.iter().map(|value| value.to_array()));
+    rows.extend(table.values.iter().map(Vec4::to_array));
+    rows.extend(table.velocities.iter().map(Vec4::to_array));
     rows
 }
 

@@ -56,6 +56,27 @@ impl FromWorld for StandBuffers {
     }
 }
 
+/// The tables of all trees that sway, for shaders of your own that draw with them: import `bevy_windwood::beam`, which has
+/// the layouts and `carry`, and find a tree's row in the low 24 bits of its mesh tag.
+#[derive(Resource, Clone)]
+pub struct StandTables {
+    /// `array<BeamPose>`: this frame's and the last frame's.
+    pub poses: Handle<ShaderBuffer>,
+    /// `array<BeamRow>`.
+    pub beams: Handle<ShaderBuffer>,
+    /// `array<TreeRow>`.
+    pub trees: Handle<ShaderBuffer>,
+    /// One `Frame`.
+    pub frame: Handle<ShaderBuffer>,
+}
+
+impl FromWorld for StandTables {
+    fn from_world(world: &mut World) -> Self {
+        let StandBuffers { poses, beams, trees, frame, .. } = world.resource::<StandBuffers>();
+        Self { poses: poses.clone(), beams: beams.clone(), trees: trees.clone(), frame: frame.clone() }
+    }
+}
+
 /// Buffers and the materials that are bound to them.
 #[derive(SystemParam)]
 pub(super) struct Uploads<'w> {
@@ -173,8 +194,7 @@ impl FromWorld for PoseJob {
     fn from_world(world: &mut World) -> Self {
         let shared = world.resource::<StandBuffers>();
         let [a, b] = shared.winds.clone();
-        let buffers =
-            [a, b, shared.beams.clone(), shared.trees.clone(), shared.frame.clone(), shared.poses.clone()];
+        let buffers = [a, b, shared.beams.clone(), shared.trees.clone(), shared.frame.clone(), shared.poses.clone()];
         Self { buffers, trees: 0, most_beams: 0, both: true }
     }
 }

@@ -39,7 +39,7 @@ impl Tree {
     }
 }
 
-/// The finaliser of SplitMix64 (Steele, Lea & Flood 2014): nearby numbers become unrelated ones.
+/// The finaliser of `SplitMix64` (Steele, Lea & Flood 2014): nearby numbers become unrelated ones.
 fn mixed(mut x: u64) -> u64 {
     x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -85,7 +85,7 @@ impl Default for Foliage {
             leaf: Leaf::default(),
             translucency: 0.35,
             mass_per_area_kg_m2: 0.2,
-            drag_coefficient: 0.12,
+            drag_coefficient: 0.012,
             response: LeafResponse::default(),
         }
     }
@@ -110,9 +110,10 @@ impl Foliage {
         require("translucency", self.translucency, 0.0..=1.0)?;
         require("mass_per_area_kg_m2", self.mass_per_area_kg_m2, 0.0..=10.0)?;
         require("drag_coefficient", self.drag_coefficient, 0.0..=2.0)?;
-        let response = self.response.validate().map_err(|error| {
-            SpeciesError::out_of_range(error.field, error.value, error.allowed).inside("response")
-        });
+        let response = self
+            .response
+            .validate()
+            .map_err(|error| SpeciesError::out_of_range(error.field, error.value, error.allowed).inside("response"));
         response?;
         self.leaf.validate().map_err(|error| error.inside("leaf"))
     }

@@ -29,7 +29,12 @@ impl AssetLoader for SpeciesLoader {
     type Settings = ();
     type Error = SpeciesLoadError;
 
-    async fn load(&self, reader: &mut dyn Reader, (): &(), _: &mut LoadContext<'_>) -> Result<Species, SpeciesLoadError> {
+    async fn load(
+        &self,
+        reader: &mut dyn Reader,
+        (): &(),
+        _: &mut LoadContext<'_>,
+    ) -> Result<Species, SpeciesLoadError> {
         let mut bytes = Vec::new();
         reader.read_to_end(&mut bytes).await?;
         Ok(Species::from_ron(std::str::from_utf8(&bytes)?)?)

@@ -276,7 +276,12 @@ mod tests {
             let (species, skeleton, trunk) = trunk(name);
             let bare = Skeleton { beams: vec![skeleton.beams[0]], clusters: Vec::new(), ..skeleton };
             let alone = beam_dynamics(&species, &bare)[0];
-            println!("{name}: {} Hz alone {} Hz gain {}", natural_frequency_hz(&trunk), natural_frequency_hz(&alone), trunk.gain);
+            println!(
+                "{name}: {} Hz alone {} Hz gain {}",
+                natural_frequency_hz(&trunk),
+                natural_frequency_hz(&alone),
+                trunk.gain
+            );
             assert!(natural_frequency_hz(&trunk) < 0.7 * natural_frequency_hz(&alone));
             assert!(trunk.gain > alone.gain);
         }

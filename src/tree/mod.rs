@@ -8,8 +8,8 @@
 pub mod bark;
 mod components;
 pub mod foliage;
-pub mod growth;
 mod grove;
+pub mod growth;
 pub mod leaf_mesh;
 pub mod leaf_texture;
 mod loader;

@@ -66,7 +66,8 @@ fn sway_bounds(beams: &[BeamDynamics], wood: &WoodVertices, leaves: &LeafVertice
         let azimuth = step as f32 / BOUND_DIRECTIONS as f32 * std::f32::consts::TAU;
         // The last step is the tree at rest.
         let lean = if step == BOUND_DIRECTIONS { Vec3::ZERO } else { Vec3::new(azimuth.cos(), 0.0, azimuth.sin()) };
-        let to_the_limit = |beam: &BeamDynamics| lean.reject_from_normalized(beam.direction).normalize_or_zero() * HURRICANE_RAD;
+        let to_the_limit =
+            |beam: &BeamDynamics| lean.reject_from_normalized(beam.direction).normalize_or_zero() * HURRICANE_RAD;
         TreePoser::bent(beams, to_the_limit).pose(&[], &mut poses);
         let mut enclose = |sway: &[f32; 4], position: &[f32; 3], reach_m: f32| {
             let beam = sway[0] as usize;

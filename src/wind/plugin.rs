@@ -3,7 +3,7 @@
 use super::{
     cells::{WindCell, sample_wind_cells},
     clock::{WindClock, advance_clock},
-    current::{ActiveWind, Wind, fade_field, receive_field, rebuild_field},
+    current::{ActiveWind, Wind, fade_field, rebuild_field, receive_field},
 };
 use crate::schedule::WindwoodSystems;
 use bevy::prelude::*;

@@ -91,12 +91,12 @@ fn then(first: vec4<f32>, second: vec4<f32>) -> vec4<f32> {
 const SLOPE_TIP: f32 = 1.3765054;
 const TIP_ANGLE_LIMIT: f32 = 1.1;
 const MODE_SHAPE_0: vec4<f32> = vec4(2.546882, -1.6781346, -0.2758867, 0.4069252);
-const MODE_SHAPE_1: vec4<f32> = vec4(1.2742649, -0.56341205, -0.06274729, 0.07835665);
+const MODE_SHAPE_1: vec4<f32> = vec4(1.2742649, -0.563412, -0.06274729, 0.07835665);
 const MODE_SHAPE_2: vec4<f32> = vec4(2.1950821, -2.357947, 0.80684225, -0.03069512);
-const MODE_SHAPE_3: vec4<f32> = vec4(4.209066, -7.1503183, 4.4999294, -1.0119247);
+const MODE_SHAPE_3: vec4<f32> = vec4(4.209066, -7.150318, 4.4999294, -1.0119247);
 const MODE_SHAPE_4: vec4<f32> = vec4(8.117791, -17.585144, 13.848035, -3.8794978);
 const MODE_SHAPE_5: vec4<f32> = vec4(15.02049, -37.190565, 32.597094, -9.95987);
-const MODE_SHAPE_6: vec4<f32> = vec4(26.275351, -70.26942, 65.27605, -20.841745);
+const MODE_SHAPE_6: vec4<f32> = vec4(26.27535, -70.26942, 65.27605, -20.841745);
 
 // Tip angle of a beam from the wind pressure across it: linear for a breeze, saturating in a storm.
 fn tip_angle(pressure: vec3<f32>, direction: vec3<f32>, gain: f32) -> vec3<f32> {

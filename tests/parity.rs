@@ -1,0 +1,14 @@
+//! The graphics processor poses trees as the processor does. Needs a Vulkan driver; Mesa's software one will do.
+
+#[path = "../examples/validate/parity.rs"]
+mod parity;
+#[path = "../examples/validate/report.rs"]
+mod report;
+
+#[test]
+fn posed_vertices_agree_on_both_processors() {
+    let report = parity::run();
+    report.print();
+    println!("{:#}", report.to_json());
+    assert!(report.holds());
+}

@@ -1,0 +1,21 @@
+//! The shaders say what the code says.
+
+use bevy_windwood::dynamics::pose::{MODE_SHAPE, SLOPE_TIP, TIP_ANGLE_LIMIT};
+
+const BEAM: &str = include_str!("../src/sway/shaders/beam.wgsl");
+
+/// The numbers of a constant of the shader.
+fn constant(name: &str) -> Vec<f32> {
+    let line = BEAM.lines().find(|line| line.starts_with(&format!("const {name}:"))).expect("the shader has it");
+    let value = line.split('=').nth(1).expect("it has a value").trim().trim_start_matches("vec4(");
+    value.trim_end_matches([')', ';']).split(',').map(|number| number.trim().parse().expect("a number")).collect()
+}
+
+#[test]
+fn the_mode_shape_is_the_same_in_both_languages() {
+    for (k, row) in MODE_SHAPE.iter().enumerate() {
+        assert_eq!(constant(&format!("MODE_SHAPE_{k}")), row);
+    }
+    assert_eq!(constant("SLOPE_TIP"), [SLOPE_TIP]);
+    assert_eq!(constant("TIP_ANGLE_LIMIT"), [TIP_ANGLE_LIMIT]);
+}
