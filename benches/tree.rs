@@ -2,9 +2,7 @@
 
 use std::hint::black_box;
 
-use bevy_windwood::tree::{
-    bark::bark_textures, leaf_mesh::leaves, leaf_texture::leaf_texture, mesh::wood, skeleton::grow, species::Species,
-};
+use bevy_windwood::tree::{Species, TreeModel, bark::bark_textures, leaf_texture::leaf_texture, skeleton::grow};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 fn oak() -> Species {
@@ -16,12 +14,12 @@ fn growth(criterion: &mut Criterion) {
     criterion.bench_function("grow/oak", |bencher| bencher.iter(|| grow(black_box(&oak), 1)));
 }
 
-/// Grows and meshes as many oaks as make 50,000 vertices.
-fn meshes(criterion: &mut Criterion) {
+/// Bakes as many oaks as make 50,000 vertices: skeleton, mechanics, meshes and bounds.
+fn bake(criterion: &mut Criterion) {
     let oak = oak();
     let vertices = |seed| {
-        let skeleton = grow(&oak, seed);
-        wood(&oak, &skeleton).positions.len() + leaves(&oak, &skeleton).positions.len()
+        let model = TreeModel::bake(&oak, seed);
+        model.wood.positions.len() + model.leaves.positions.len()
     };
     let mut total = 0;
     let seeds: Vec<u64> = (1..)
@@ -31,7 +29,7 @@ fn meshes(criterion: &mut Criterion) {
             wanted
         })
         .collect();
-    let mut group = criterion.benchmark_group("mesh");
+    let mut group = criterion.benchmark_group("bake");
     group.throughput(Throughput::Elements(total as u64));
     group.bench_function("oak_50k_vertices", |bencher| {
         bencher.iter(|| seeds.iter().map(|&seed| black_box(vertices(seed))).sum::<usize>());
@@ -48,5 +46,5 @@ fn textures(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, growth, meshes, textures);
+criterion_group!(benches, growth, bake, textures);
 criterion_main!(benches);

@@ -159,12 +159,12 @@ impl Paint {
         let meadow = Vec3::new(0.115, 0.165, 0.045);
         let dry = Vec3::new(0.24, 0.21, 0.09);
         let woods = Vec3::new(0.035, 0.065, 0.028);
-        let rock = Vec3::new(0.26, 0.24, 0.22);
+        let rock = Vec3::new(0.17, 0.155, 0.14);
         let distance = Vec2::new(x, z).length();
         let grass = meadow.lerp(dry, smooth(-0.25, 0.55, near));
-        let wooded = smooth(400.0, 1200.0, distance) * smooth(-0.25, 0.25, far);
+        let wooded = smooth(400.0, 1200.0, distance) * smooth(-0.35, 0.1, far + 0.3 * octave(60.0));
         let slope = 1.0 - normal.y;
-        let colour = grass.lerp(woods, wooded).lerp(rock, smooth(0.13, 0.3, slope));
+        let colour = grass.lerp(woods, wooded).lerp(rock, smooth(0.15, 0.32, slope + 0.08 * far + 0.05 * octave(70.0)));
         [colour.x, colour.y, colour.z, 1.0]
     }
 }

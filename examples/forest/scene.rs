@@ -43,7 +43,7 @@ pub fn camera_transform(setting: &Setting) -> Transform {
     let (eye, target) = match options.view {
         View::Hillside => {
             let eye = -uphill * (half * 1.12 + 30.0) + uphill.perp() * 0.2 * half;
-            (on_ground(eye, 0.16 * half + 4.0), on_ground(uphill * 0.15 * half, 4.0))
+            (on_ground(eye, 0.16 * half + 5.0), on_ground(uphill * 0.2 * half, 14.0))
         }
         View::Edge => {
             let eye = -uphill * (half + 17.0);
@@ -98,7 +98,7 @@ pub fn build(
     ));
     commands.spawn((
         DirectionalLight {
-            illuminance: 11_000.0,
+            illuminance: 13_500.0,
             color: Color::srgb(1.0, 0.94, 0.84),
             shadow_maps_enabled: true,
             ..default()
@@ -114,7 +114,7 @@ pub fn build(
     ));
     commands.insert_resource(GlobalAmbientLight {
         color: Color::srgb(0.72, 0.84, 1.0),
-        brightness: 900.0,
+        brightness: 620.0,
         ..default()
     });
     commands.insert_resource(bevy::light::DirectionalLightShadowMap { size: 2048 });
