@@ -98,10 +98,13 @@ fn vertex(in: Vertex) -> VertexOutput {
     out.color = vec4(shade(in, tag), 1.0);
 #endif
 
+// The main pass knows of the motion vectors, too, but does not write them.
+#ifdef PREPASS_PIPELINE
 #ifdef MOTION_VECTOR_PREPASS
     let before_from_local = mesh_functions::get_previous_world_from_local(in.instance_index);
     let before = swayed(in, tree, frame.poses_before, frame.leaf_time.y);
     out.previous_world_position = before_from_local * vec4(before.position, 1.0);
+#endif
 #endif
 
 #ifdef VERTEX_OUTPUT_INSTANCE_INDEX

@@ -1,0 +1,74 @@
+//! The shaders compile for every pass that draws trees. Needs a Vulkan driver; Mesa's software one will do.
+
+use bevy::{
+    camera::RenderTarget,
+    core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, NormalPrepass},
+    log::LogPlugin,
+    material::descriptor::PipelineDescriptor,
+    prelude::*,
+    render::{
+        RenderApp, RenderPlugin,
+        render_resource::{CachedPipelineState, PipelineCache, TextureFormat},
+    },
+    time::TimeUpdateStrategy,
+    window::ExitCondition,
+    winit::WinitPlugin,
+};
+use bevy_windwood::prelude::*;
+use std::time::Duration;
+
+#[test]
+fn main_pass_prepasses_and_shadows_all_compile() {
+    let mut app = App::new();
+    let plugins = DefaultPlugins
+        .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
+        .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
+        .set(LogPlugin { filter: "error".into(), ..default() })
+        .disable::<bevy::render::pipelined_rendering::PipelinedRenderingPlugin>()
+        .disable::<WinitPlugin>();
+    app.add_plugins((plugins, WindwoodPlugins))
+        .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(16)));
+    app.finish();
+    app.cleanup();
+
+    let species = app.world().resource::<AssetServer>().load("species/fir.species.ron");
+    let tree = app.world_mut().spawn((Tree::new(species), Transform::default())).id();
+    let image = Image::new_target_texture(64, 64, TextureFormat::Rgba8UnormSrgb, None);
+    let target = app.world_mut().resource_mut::<Assets<Image>>().add(image);
+    app.world_mut().spawn((
+        Camera3d::default(),
+        Msaa::Off,
+        RenderTarget::Image(target.into()),
+        (DepthPrepass, NormalPrepass, MotionVectorPrepass),
+        Transform::from_xyz(0.0, 9.0, 30.0).looking_at(Vec3::Y * 9.0, Vec3::Y),
+    ));
+    app.world_mut().spawn((
+        DirectionalLight { shadow_maps_enabled: true, ..default() },
+        Transform::from_xyz(1.0, 2.0, 1.0).looking_at(Vec3::ZERO, Vec3::Y),
+    ));
+    for _ in 0..2000 {
+        app.update();
+        if app.world().get::<Mesh3d>(tree).is_some() {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    (0..5).for_each(|_| app.update());
+
+    let cache = app.sub_app(RenderApp).world().resource::<PipelineCache>();
+    let broken: Vec<String> = cache
+        .pipelines()
+        .filter_map(|pipeline| match &pipeline.state {
+            CachedPipelineState::Err(error) => Some(error.to_string()),
+            _ => None,
+        })
+        .collect();
+    assert!(broken.is_empty(), "{}", broken.join("\n"));
+    let ours = cache.pipelines().filter(|pipeline| match &pipeline.descriptor {
+        PipelineDescriptor::RenderPipelineDescriptor(descriptor) => {
+            descriptor.vertex.shader_defs.contains(&"WINDWOOD_LEAVES".into())
+        }
+        PipelineDescriptor::ComputePipelineDescriptor(_) => false,
+    });
+    assert!(ours.count() >= 3, "leaves are drawn in the main pass, the prepass and the shadow pass");
+}
