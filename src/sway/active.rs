@@ -122,6 +122,7 @@ pub(super) fn fade_tables(wind: Res<Wind>, time: Res<Time>, mut sway: ResMut<Act
 }
 
 /// The periodic clock of one table, in s: exact for days, where a plain `f32` would crawl.
+#[cfg(feature = "render")]
 pub(super) fn wrapped_time_s(response: &WindResponse, time_s: f64) -> f64 {
     time_s.rem_euclid(response.field.period_s())
 }

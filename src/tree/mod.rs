@@ -29,6 +29,7 @@ pub use model::{SwayBounds, TreeModel};
 pub use plugin::TreePlugin;
 pub use species::{Species, SpeciesError};
 
+#[cfg(feature = "render")]
 pub(crate) use grove::receive_models;
 
 #[cfg(test)]
