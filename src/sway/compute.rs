@@ -2,7 +2,8 @@
 //!
 //! Why not in the vertex shader alone: a vertex rides on a chain of up to ten beams, and each beam's answer to the wind
 //! is a dozen fetches from the tables. A tree has some twenty times as many vertices as beams, and each vertex is run in
-//! every pass. Measured on software Vulkan, 60 trees took some 40 s a frame that way, and take well under one this way.
+//! every pass. Measured on software Vulkan, 60 trees at 640x400 with four samples: with the whole chain in the vertex
+//! shader no picture was there after two minutes, this way one (of two or three frames) after 19 s.
 
 use bevy::{
     core_pipeline::schedule::camera_driver,
