@@ -1,33 +1,24 @@
 //! The shaders compile for every pass that draws trees. Needs a Vulkan driver; Mesa's software one will do.
 
+mod support;
+
 use bevy::{
     camera::RenderTarget,
     core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, NormalPrepass},
-    log::LogPlugin,
     material::descriptor::PipelineDescriptor,
     prelude::*,
     render::{
-        RenderApp, RenderPlugin,
+        RenderApp,
         render_resource::{CachedPipelineState, PipelineCache, TextureFormat},
     },
-    time::TimeUpdateStrategy,
-    window::ExitCondition,
-    winit::WinitPlugin,
 };
 use bevy_windwood::prelude::*;
 use std::time::Duration;
+use support::{headless_app, update_until};
 
 #[test]
 fn main_pass_prepasses_and_shadows_all_compile() {
-    let mut app = App::new();
-    let plugins = DefaultPlugins
-        .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
-        .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
-        .set(LogPlugin { filter: "error".into(), ..default() })
-        .disable::<bevy::render::pipelined_rendering::PipelinedRenderingPlugin>()
-        .disable::<WinitPlugin>();
-    app.add_plugins((plugins, WindwoodPlugins))
-        .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(16)));
+    let mut app = headless_app(Duration::from_millis(16), None);
     app.finish();
     app.cleanup();
 
@@ -46,13 +37,7 @@ fn main_pass_prepasses_and_shadows_all_compile() {
         DirectionalLight { shadow_maps_enabled: true, ..default() },
         Transform::from_xyz(1.0, 2.0, 1.0).looking_at(Vec3::ZERO, Vec3::Y),
     ));
-    for _ in 0..2000 {
-        app.update();
-        if app.world().get::<Mesh3d>(tree).is_some() {
-            break;
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    assert!(update_until(&mut app, |world| world.get::<Mesh3d>(tree).is_some()), "the tree did not get ready");
     (0..5).for_each(|_| app.update());
 
     let cache = app.sub_app(RenderApp).world().resource::<PipelineCache>();

@@ -4,13 +4,15 @@
 //! processor; a compute shader then carries every vertex with the same shader module that draws it, and the positions are
 //! read back. The processor poses the same tree with `TreePoser` from the same tables.
 
+#[path = "../../tests/support/mod.rs"]
+mod support;
+
 use crate::report::Report;
 use bevy::{
     core_pipeline::schedule::camera_driver,
-    log::LogPlugin,
     prelude::*,
     render::{
-        RenderApp, RenderPlugin,
+        RenderApp,
         extract_resource::{ExtractResource, ExtractResourcePlugin},
         gpu_readback::{Readback, ReadbackComplete},
         render_asset::RenderAssets,
@@ -23,9 +25,6 @@ use bevy::{
         storage::{GpuShaderBuffer, ShaderBuffer},
     },
     shader::Shader,
-    time::TimeUpdateStrategy,
-    window::ExitCondition,
-    winit::WinitPlugin,
 };
 use bevy_windwood::{
     dynamics::{BeamPose, TreePoser},
@@ -101,14 +100,9 @@ fn worst_differences() -> Result<(f64, f64), String> {
     let mut app = headless_app();
     let tree = app.world().resource::<AssetServer>().load("species/oak.species.ron");
     let tree = app.world_mut().spawn((Tree::new(tree).with_seed(1), STANDS)).id();
-    let mut patience = 2000;
-    while !(app.world().resource::<ActiveSway>().is_ready() && app.world().get::<Mesh3d>(tree).is_some()) {
-        app.update();
-        patience -= 1;
-        if patience == 0 {
-            return Err("the tree did not get ready".into());
-        }
-        std::thread::sleep(Duration::from_millis(5));
+    let ready = |world: &mut World| world.resource::<ActiveSway>().is_ready() && world.get::<Mesh3d>(tree).is_some();
+    if !support::update_until(&mut app, ready) {
+        return Err("the tree did not get ready".into());
     }
     let model = app.world().get::<Grown>(tree).map(|grown| grown.model.clone()).ok_or("the tree has no model")?;
     let model = app.world().resource::<Assets<TreeModel>>().get(&model).cloned().ok_or("the model is gone")?;
@@ -131,16 +125,8 @@ fn worst_differences() -> Result<(f64, f64), String> {
 }
 
 fn headless_app() -> App {
-    let mut app = App::new();
-    let plugins = DefaultPlugins
-        .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
-        .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
-        .set(LogPlugin { filter: "error".into(), ..default() })
-        .disable::<bevy::render::pipelined_rendering::PipelinedRenderingPlugin>()
-        .disable::<WinitPlugin>();
-    app.add_plugins((plugins, WindwoodPlugins))
-        .insert_resource(Wind { speed: STORM_M_S, seed: 3, ..default() })
-        .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO))
+    let mut app = support::headless_app(Duration::ZERO, None);
+    app.insert_resource(Wind { speed: STORM_M_S, seed: 3, ..default() })
         .add_plugins(ExtractResourcePlugin::<Probe>::default());
     if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
         render_app.add_systems(RenderGraph, carry_points.before(camera_driver));
@@ -207,9 +193,7 @@ fn install_probe(app: &mut App, vertices: &[BoundPoint]) -> ReadBack {
 fn read_back(app: &mut App, read: &ReadBack, count: usize) -> Result<Vec<Vec3>, String> {
     const SETTLE_FRAMES: usize = 6;
     for _ in 0..SETTLE_FRAMES {
-        app.update();
-        let poll = bevy::render::render_resource::PollType::Wait { submission_index: None, timeout: None };
-        app.world().resource::<RenderDevice>().wgpu_device().poll(poll).map_err(|error| error.to_string())?;
+        support::render_frame(app)?;
     }
     let bytes = read.lock().ok().and_then(|mut slot| slot.take()).ok_or("nothing was read back")?;
     let floats: Vec<f32> = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();

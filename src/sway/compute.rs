@@ -44,9 +44,17 @@ pub(super) fn plugin(app: &mut App) {
     app.add_plugins(ExtractResourcePlugin::<PoseJob>::default());
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else { return };
     render_app
-        .add_systems(RenderStartup, queue_pipelines)
+        .add_systems(RenderStartup, queue_pipelines.run_if(can_pose))
         .add_systems(Render, bind_tables.in_set(RenderSystems::PrepareBindGroups))
         .add_systems(RenderGraph, pose_trees.before(camera_driver));
+}
+
+/// Storage buffers that a stage needs: six to pose; to draw, our four and Bevy's own for meshes, instances and skins.
+pub(super) const STORAGE_BUFFERS_NEEDED: u32 = 8;
+
+/// Where there are too few buffers, trees stand still and even a pipeline's layout would be an error.
+fn can_pose(device: Res<RenderDevice>) -> bool {
+    device.limits().max_storage_buffers_per_shader_stage >= STORAGE_BUFFERS_NEEDED
 }
 
 #[derive(Resource)]

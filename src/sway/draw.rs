@@ -25,6 +25,8 @@ pub struct DrawPath {
     pub culls_on_gpu: bool,
     /// Beams that can be posed at once, over all trees; trees beyond that stand still.
     pub pose_limit: u32,
+    /// Largest table that a shader can read, bytes.
+    pub table_limit_bytes: u64,
 }
 
 /// The leaves of a tree: a child entity with a draw of its own.

@@ -2,7 +2,7 @@
 
 use super::{
     compute,
-    compute::PoseJob,
+    compute::{PoseJob, STORAGE_BUFFERS_NEEDED},
     draw::{DrawPath, SpeciesDressed, Wardrobe, dress_trees},
     looks::{Tailoring, finish_tailoring, start_tailoring},
     material::SwayMaterial,
@@ -25,9 +25,6 @@ use bevy::{
 
 /// Draws [`Tree`](crate::tree::Tree)s, posed in the vertex shader. Without a renderer it does nothing but say so.
 pub struct SwayDrawPlugin;
-
-/// Storage buffers that a stage needs: six to pose; to draw, our four and Bevy's own for meshes, instances and skins.
-const STORAGE_BUFFERS_NEEDED: u32 = 8;
 
 impl Plugin for SwayDrawPlugin {
     fn build(&self, app: &mut App) {
@@ -78,6 +75,6 @@ impl Plugin for SwayDrawPlugin {
         // Poses have two halves, and half as many again are kept ready.
         let largest = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size);
         let pose_limit = u32::try_from(largest / (3 * POSE_BYTES as u64)).unwrap_or(u32::MAX);
-        app.insert_resource(DrawPath { sways, culls_on_gpu, pose_limit });
+        app.insert_resource(DrawPath { sways, culls_on_gpu, pose_limit, table_limit_bytes: largest });
     }
 }

@@ -4,6 +4,7 @@
 use super::{
     active::{ActiveSway, leaf_clock_s, wrapped_time_s},
     compute::PoseJob,
+    draw::DrawPath,
     material::SwayMaterial,
     response::WindResponse,
     rows::{FrameRow, POSE_BYTES, slot_rows},
@@ -34,6 +35,8 @@ pub(super) struct StandBuffers {
     posed: Option<(f64, f32)>,
     /// Frames for which materials must still be bound anew.
     stale_materials: u8,
+    /// Whether the winds of slot A and B have room on this device.
+    fits: [bool; 2],
 }
 
 impl FromWorld for StandBuffers {
@@ -52,6 +55,7 @@ impl FromWorld for StandBuffers {
             sent: [None, None],
             posed: None,
             stale_materials: 0,
+            fits: [true; 2],
         }
     }
 }
@@ -122,15 +126,30 @@ impl Uploads<'_> {
     }
 }
 
-/// Rewrites a slot when another wind has moved into it; its weight is 0 at that moment.
-pub(super) fn upload_winds(sway: Res<ActiveSway>, mut uploads: Uploads) {
+/// Rewrites a slot when another wind has moved into it; its weight is 0 at that moment. Under a wind whose tables are too
+/// large for the device trees stand at rest.
+pub(super) fn upload_winds(
+    sway: Res<ActiveSway>,
+    path: Option<Res<DrawPath>>,
+    mut warned: Local<bool>,
+    mut uploads: Uploads,
+) {
     for (slot, response) in sway.slots().into_iter().enumerate() {
         let Some(response) = response else { continue };
         if uploads.shared.sent[slot].as_ref().is_some_and(|sent| Arc::ptr_eq(sent, response)) {
             continue;
         }
-        let handle = uploads.shared.winds[slot].clone();
-        uploads.write(&handle, &slot_rows(response));
+        let rows = slot_rows(response);
+        let bytes = size_of_val(rows.as_slice()) as u64;
+        let limit = path.as_ref().map_or(u64::MAX, |path| path.table_limit_bytes);
+        uploads.shared.fits[slot] = bytes <= limit;
+        if bytes <= limit {
+            let handle = uploads.shared.winds[slot].clone();
+            uploads.write(&handle, &rows);
+        } else if !*warned {
+            warn!("windwood: the tables of this wind have {bytes} bytes, the device allows {limit}; trees stand still");
+            *warned = true;
+        }
         uploads.shared.sent[slot] = Some(response.clone());
     }
 }
@@ -185,7 +204,7 @@ fn frame_row(sway: &ActiveSway, clock: &WindClock, shared: &StandBuffers, trees:
         leaf_time_s: [leaf_clock_s(now), leaf_clock_s(before)],
         poses_now: halves[0],
         poses_before: halves[1],
-        ready: u32::from(sway.is_ready()),
+        ready: u32::from(sway.is_ready() && shared.fits == [true; 2]),
         tree_count: trees,
     }
 }

@@ -1,0 +1,250 @@
+//! The motion vectors that the prepass writes are the motion of the wood. Needs a Vulkan driver; Mesa's software one will do.
+//!
+//! A leafless oak leans in a storm before a still camera. A compute shader reads the prepass's texture back; the processor
+//! poses the same tree now and one frame ago, projects every vertex that faces the camera, and says what should be there.
+
+mod support;
+
+use bevy::{
+    camera::RenderTarget,
+    core_pipeline::{
+        prepass::{DepthPrepass, MotionVectorPrepass, ViewPrepassTextures},
+        schedule::camera_driver,
+    },
+    prelude::*,
+    render::{
+        RenderApp,
+        extract_resource::{ExtractResource, ExtractResourcePlugin},
+        gpu_readback::{Readback, ReadbackComplete},
+        render_asset::RenderAssets,
+        render_resource::{
+            BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedComputePipelineId,
+            ComputePassDescriptor, ComputePipelineDescriptor, PipelineCache, ShaderStages, TextureFormat,
+            TextureSampleType,
+            binding_types::{storage_buffer_sized, texture_2d},
+        },
+        renderer::{RenderContext, RenderDevice, RenderGraph},
+        storage::{GpuShaderBuffer, ShaderBuffer},
+    },
+    shader::Shader,
+};
+use bevy_windwood::{
+    dynamics::{BeamPose, TreePoser},
+    prelude::*,
+    tree::{TreeModel, foliage::Foliage, species::Wood},
+};
+use std::{
+    sync::{Arc, Mutex},
+    time::Duration,
+};
+use support::{headless_app, render_frame, update_until};
+
+const SIZE: u32 = 512;
+/// Lower wood hardly moves, m.
+const CROWN_M: f32 = 3.0;
+/// Long, so that the wood moves far.
+const FRAME: Duration = Duration::from_millis(500);
+
+const READ_SHADER: &str = "
+@group(0) @binding(0) var motion: texture_2d<f32>;
+@group(0) @binding(1) var<storage, read_write> read: array<vec2<f32>>;
+@compute @workgroup_size(8, 8)
+fn read_motion(@builtin(global_invocation_id) id: vec3<u32>) {
+    let size = textureDimensions(motion);
+    if id.x < size.x && id.y < size.y {
+        read[id.y * size.x + id.x] = textureLoad(motion, vec2<i32>(id.xy), 0).xy;
+    }
+}
+";
+
+#[derive(Resource, ExtractResource, Clone)]
+struct Probe {
+    read: Handle<ShaderBuffer>,
+    shader: Handle<Shader>,
+}
+
+#[derive(Resource)]
+struct ReadPipeline(BindGroupLayoutDescriptor, CachedComputePipelineId);
+
+#[test]
+fn the_prepass_writes_the_motion_of_the_wood() {
+    let mut app = headless_app(FRAME, None);
+    app.insert_resource(Wind { speed: 26.0, seed: 5, ..default() })
+        .add_plugins(ExtractResourcePlugin::<Probe>::default());
+    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+        render_app.add_systems(RenderGraph, read_motion.after(camera_driver));
+    }
+    app.finish();
+    app.cleanup();
+
+    // Without leaves to catch the wind, only limp wood moves far.
+    let wood = Wood { young_modulus_pa: 1.0e8, ..default() };
+    let species = Species { wood, foliage: Foliage { first_order: 5, size_m: 0.02, ..default() }, ..default() };
+    let species = app.world_mut().resource_mut::<Assets<Species>>().add(species);
+    let tree = app.world_mut().spawn((Tree::new(species).with_seed(2), Transform::default())).id();
+    let image = Image::new_target_texture(SIZE, SIZE, TextureFormat::Rgba8UnormSrgb, None);
+    let target = app.world_mut().resource_mut::<Assets<Image>>().add(image);
+    let eye = Transform::from_xyz(0.0, 8.0, 22.0).looking_at(Vec3::Y * 8.0, Vec3::Y);
+    app.world_mut().spawn((
+        Camera3d::default(),
+        Msaa::Off,
+        RenderTarget::Image(target.into()),
+        (DepthPrepass, MotionVectorPrepass),
+        eye,
+    ));
+    let ready = |world: &mut World| world.resource::<ActiveSway>().is_settled() && world.get::<Mesh3d>(tree).is_some();
+    assert!(update_until(&mut app, ready), "the tree did not get ready");
+    let read = install_probe(&mut app);
+
+    let grown = app.world().get::<Grown>(tree).expect("the tree is grown").model.clone();
+    let model = app.world().resource::<Assets<TreeModel>>().get(&grown).cloned().expect("its model is there");
+    let clip_from_world = {
+        let mut cameras = app.world_mut().query::<&Camera>();
+        let camera = cameras.iter(app.world()).next().expect("there is one");
+        camera.clip_from_view() * eye.to_matrix().inverse()
+    };
+
+    // What is read back is some frames old: the clock of each frame is kept beside what came with it.
+    let mut clocks = Vec::new();
+    let mut seen: Vec<(usize, Vec<Vec2>)> = Vec::new();
+    for frame in 0..14 {
+        clocks.push(*app.world().resource::<WindClock>());
+        render_frame(&mut app).expect("the frame is rendered");
+        clocks[frame] = *app.world().resource::<WindClock>();
+        if let Some(bytes) = read.lock().expect("nobody panics with it").take() {
+            seen.push((frame, vectors(&bytes)));
+        }
+    }
+    let (frame, last) = seen.last().expect("the texture was read back");
+    // The latency of reading back is whole frames: the one that fits is found among the last, and must fit closely.
+    let fits = (0..6).filter_map(|ago| frame.checked_sub(ago)).map(|frame| {
+        let clock = clocks[frame];
+        compare(app.world().resource::<ActiveSway>(), &model, clip_from_world, clock, last)
+    });
+    let best = fits.min_by(|a, b| a.median_error.total_cmp(&b.median_error)).expect("there are frames");
+    assert!(best.compared > 100, "{} vertices were compared", best.compared);
+    // The storm moves the wood by more than a tenth of a pixel a frame.
+    assert!(best.median_motion > 0.1 / SIZE as f32, "{}", best.median_motion);
+    // The middle of a texel lies up to 0.7 texels from the vertex, where the wood moves by a few per cent more or less.
+    assert!(best.median_error < 0.05 * best.median_motion, "{} of {}", best.median_error, best.median_motion);
+}
+
+/// How the texture agrees with the processor, in widths of the picture.
+struct Agreement {
+    compared: usize,
+    median_error: f32,
+    median_motion: f32,
+}
+
+fn compare(sway: &ActiveSway, model: &TreeModel, clip: Mat4, clock: WindClock, read: &[Vec2]) -> Agreement {
+    let now = poses(sway, model, clock.time_s);
+    let before = poses(sway, model, clock.previous_s);
+    let project = |point: Vec3| {
+        let ndc = clip.project_point3(point);
+        Vec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y)
+    };
+    let (mut errors, mut motions) = (Vec::new(), Vec::new());
+    let wood = &model.wood;
+    for ((at, sway), normal) in wood.positions.iter().zip(&wood.sway).zip(&wood.normals) {
+        let (beam, s, at) = (sway[0] as usize, sway[1], Vec3::from_array(*at));
+        if normal[2] < 0.3 || at.y < CROWN_M {
+            continue;
+        }
+        let here = project(now[beam].carry(&model.beams[beam], s, at).0);
+        let there = project(before[beam].carry(&model.beams[beam], s, at).0);
+        let texel = (here * SIZE as f32).floor();
+        if texel.cmplt(Vec2::ZERO).any() || texel.cmpge(Vec2::splat(SIZE as f32)).any() {
+            continue;
+        }
+        let written = read[texel.y as usize * SIZE as usize + texel.x as usize];
+        // A vertex at the rim of a thin branch may round to a texel of the background.
+        if written != Vec2::ZERO {
+            errors.push((here - there).distance(written));
+            motions.push((here - there).length());
+        }
+    }
+    Agreement { compared: errors.len(), median_error: median(errors), median_motion: median(motions) }
+}
+
+fn median(mut values: Vec<f32>) -> f32 {
+    values.sort_by(f32::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f32::NAN)
+}
+
+/// The tree posed by the processor. It stands unturned at the origin.
+fn poses(sway: &ActiveSway, model: &TreeModel, time_s: f64) -> Vec<BeamPose> {
+    let mut poses = vec![BeamPose::REST; model.beams.len()];
+    let wind = sway.now().next().expect("a wind blows").response;
+    let frame = wind.field.frame();
+    let to_wind = Quat::from_mat3(&Mat3::from_cols(frame.along, Vec3::Y, frame.across)).inverse();
+    let classes = &wind.table.classes;
+    let poser = TreePoser::new(&model.beams, wind.basis.map(), classes, to_wind, 1.0);
+    let (column, tau_s) = wind.place(Vec3::ZERO, time_s);
+    let mut responses = vec![Vec4::ZERO; classes.count];
+    wind.table.responses(column, tau_s, &mut responses);
+    poser.pose(&responses, &mut poses);
+    poses
+}
+
+fn vectors(bytes: &[u8]) -> Vec<Vec2> {
+    let floats: Vec<f32> = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+    floats.chunks_exact(2).map(Vec2::from_slice).collect()
+}
+
+fn install_probe(app: &mut App) -> Arc<Mutex<Option<Vec<u8>>>> {
+    let read: Arc<Mutex<Option<Vec<u8>>>> = Arc::default();
+    let world = app.world_mut();
+    let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wgsl(READ_SHADER, "read_motion.wgsl"));
+    let buffer = ShaderBuffer::from(vec![Vec2::ZERO; (SIZE * SIZE) as usize]);
+    let buffer = world.resource_mut::<Assets<ShaderBuffer>>().add(buffer);
+    let filled = read.clone();
+    world.spawn(Readback::buffer(buffer.clone())).observe(move |complete: On<ReadbackComplete>| {
+        *filled.lock().expect("nobody panics with it") = Some(complete.data.clone());
+    });
+    world.insert_resource(Probe { read: buffer, shader });
+    read
+}
+
+fn read_motion(
+    mut context: RenderContext,
+    mut commands: Commands,
+    probe: Option<Res<Probe>>,
+    pipeline: Option<Res<ReadPipeline>>,
+    views: Query<&ViewPrepassTextures>,
+    buffers: Res<RenderAssets<GpuShaderBuffer>>,
+    device: Res<RenderDevice>,
+    cache: Res<PipelineCache>,
+) {
+    let Some(probe) = probe else { return };
+    let Some(pipeline) = pipeline else {
+        commands.insert_resource(queue_pipeline(&probe, &cache));
+        return;
+    };
+    let Some(compute) = cache.get_compute_pipeline(pipeline.1) else { return };
+    let Some(buffer) = buffers.get(&probe.read) else { return };
+    let Some(motion) = views.iter().find_map(ViewPrepassTextures::motion_vectors_view) else { return };
+    let layout = cache.get_bind_group_layout(&pipeline.0);
+    let entries = BindGroupEntries::sequential((motion, buffer.buffer.as_entire_buffer_binding()));
+    let group = device.create_bind_group("read motion", &layout, &entries);
+    let descriptor = ComputePassDescriptor { label: Some("read motion"), timestamp_writes: None };
+    let mut pass = context.command_encoder().begin_compute_pass(&descriptor);
+    pass.set_pipeline(compute);
+    pass.set_bind_group(0, &group, &[]);
+    pass.dispatch_workgroups(SIZE.div_ceil(8), SIZE.div_ceil(8), 1);
+}
+
+fn queue_pipeline(probe: &Probe, cache: &PipelineCache) -> ReadPipeline {
+    let entries = (texture_2d(TextureSampleType::Float { filterable: false }), storage_buffer_sized(false, None));
+    let layout = BindGroupLayoutDescriptor::new(
+        "read motion",
+        &BindGroupLayoutEntries::sequential(ShaderStages::COMPUTE, entries),
+    );
+    let id = cache.queue_compute_pipeline(ComputePipelineDescriptor {
+        label: Some("read motion".into()),
+        layout: vec![layout.clone()],
+        shader: probe.shader.clone(),
+        entry_point: Some("read_motion".into()),
+        ..default()
+    });
+    ReadPipeline(layout, id)
+}
