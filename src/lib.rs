@@ -44,7 +44,7 @@ pub mod prelude {
     pub use crate::{
         WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
         sway::{ActiveSway, SwaySettings},
-        tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Species, Tree, TreeBeams, TreeLeaves},
+        tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Season, Species, Tree, TreeBeams, TreeLeaves},
         wind::{ActiveWind, Wind, WindCell, WindClock},
     };
 }

@@ -11,7 +11,7 @@ const MAY_KNOW: [(&str, &[&str]); 4] =
 
 /// Files that glue a room to the engine. All others of `wind`, `dynamics` and `tree` are pure: they can be read beside the
 /// paper, and know no entities, systems or apps.
-const GLUE: [&str; 10] = [
+const GLUE: [&str; 11] = [
     "wind/cells.rs",
     "wind/clock.rs",
     "wind/current.rs",
@@ -21,6 +21,7 @@ const GLUE: [&str; 10] = [
     "tree/grove.rs",
     "tree/loader.rs",
     "tree/plugin.rs",
+    "tree/season.rs",
     "lib.rs",
 ];
 

@@ -19,3 +19,16 @@ fn the_mode_shape_is_the_same_in_both_languages() {
     assert_eq!(constant("SLOPE_TIP"), [SLOPE_TIP]);
     assert_eq!(constant("TIP_ANGLE_LIMIT"), [TIP_ANGLE_LIMIT]);
 }
+
+#[test]
+fn the_times_of_a_leaf_are_the_same_in_both_languages() {
+    let code = include_str!("../src/tree/phenology.rs");
+    let shader = include_str!("../src/sway/shaders/season.wgsl");
+    let value = |text: &str, name: &str| -> f32 {
+        let line = text.lines().find(|line| line.starts_with(&format!("const {name}: f32"))).expect("it is there");
+        line.split('=').nth(1).expect("it has a value").trim().trim_end_matches(';').parse().expect("a number")
+    };
+    for name in ["DROP", "YOUTH"] {
+        assert_eq!(value(code, name), value(shader, name));
+    }
+}

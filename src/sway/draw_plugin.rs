@@ -34,6 +34,8 @@ impl Plugin for SwayDrawPlugin {
         }
         load_shader_library!(app, "shaders/beam.wgsl");
         load_shader_library!(app, "shaders/leaf.wgsl");
+        load_shader_library!(app, "shaders/season.wgsl");
+        embedded_asset!(app, "shaders/foliage.wgsl");
         embedded_asset!(app, "shaders/pose.wgsl");
         embedded_asset!(app, "shaders/sway.wgsl");
         app.add_plugins((MaterialPlugin::<SwayMaterial>::default(), compute::plugin))

@@ -2,7 +2,10 @@
 
 use super::{
     draw::{DrawPath, SpeciesDressed, Wardrobe},
-    material::{ATTRIBUTE_LEAF_ANCHOR, ATTRIBUTE_LEAF_AXIS, ATTRIBUTE_SWAY, LeafUniform, SwayExtension, SwayMaterial},
+    material::{
+        ATTRIBUTE_LEAF_ANCHOR, ATTRIBUTE_LEAF_AXIS, ATTRIBUTE_SWAY, LeafUniform, SeasonUniform, SwayExtension,
+        SwayMaterial,
+    },
     rows::BeamRow,
     stand::Stand,
     upload::StandBuffers,
@@ -151,6 +154,7 @@ impl Atelier<'_> {
             trees: self.shared.trees.clone(),
             frame: self.shared.frame.clone(),
             leaf: LeafUniform::from(&entry.species.foliage.response),
+            season: SeasonUniform::new(&entry.species.phenology, entry.species.foliage.leaf.colour),
         };
         let bark = self.bark_material(&cut.bark);
         let foliage = self.foliage_material(&entry.species, &cut.leaf);

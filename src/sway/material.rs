@@ -1,7 +1,7 @@
 //! The material that poses trees in the vertex shader.
 
 use super::active::FLUTTER_PERIOD_S;
-use crate::dynamics::leaf::LeafResponse;
+use crate::{dynamics::leaf::LeafResponse, tree::phenology::Phenology};
 use bevy::{
     mesh::{MeshVertexAttribute, MeshVertexBufferLayoutRef, VertexFormat},
     pbr::{ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline},
@@ -47,6 +47,9 @@ pub struct SwayExtension {
     /// How the leaves turn.
     #[uniform(104)]
     pub leaf: LeafUniform,
+    /// What they do over the year.
+    #[uniform(105)]
+    pub season: SeasonUniform,
 }
 
 /// `LeafResponse` of the shader.
@@ -75,9 +78,52 @@ impl From<&LeafResponse> for LeafUniform {
     }
 }
 
+/// `Phenology` of the shader.
+#[derive(ShaderType, Reflect, Clone, Copy, Debug, Default)]
+pub struct SeasonUniform {
+    flush: f32,
+    flush_length: f32,
+    turn: f32,
+    turn_length: f32,
+    fall: f32,
+    fall_length: f32,
+    patchiness: f32,
+    evergreen: f32,
+    spring: Vec4,
+    autumn_first: Vec4,
+    autumn_last: Vec4,
+}
+
+impl SeasonUniform {
+    /// The year of a species whose leaves are of that colour (sRGB) in summer.
+    pub fn new(phenology: &Phenology, summer: [f32; 3]) -> Self {
+        let light = |[r, g, b]: [f32; 3]| Color::srgb(r, g, b).to_linear().to_vec4();
+        let luminance = light(summer).truncate().dot(Vec3::new(0.2126, 0.7152, 0.0722));
+        let [first, last] = phenology.autumn_colours;
+        Self {
+            flush: phenology.flush,
+            flush_length: phenology.flush_length,
+            turn: phenology.turn,
+            turn_length: phenology.turn_length,
+            fall: phenology.fall,
+            fall_length: phenology.fall_length,
+            patchiness: phenology.patchiness,
+            evergreen: f32::from(u8::from(phenology.evergreen)),
+            spring: light(phenology.spring_colour).truncate().extend(luminance),
+            autumn_first: light(first),
+            autumn_last: light(last),
+        }
+    }
+}
+
+const FOLIAGE_SHADER: &str = "embedded://bevy_windwood/sway/shaders/foliage.wgsl";
 const SWAY_SHADER: &str = "embedded://bevy_windwood/sway/shaders/sway.wgsl";
 
 impl MaterialExtension for SwayExtension {
+    fn fragment_shader() -> ShaderRef {
+        FOLIAGE_SHADER.into()
+    }
+
     fn vertex_shader() -> ShaderRef {
         SWAY_SHADER.into()
     }
@@ -111,8 +157,9 @@ impl MaterialExtension for SwayExtension {
         }
         descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];
 
-        let shader_defs = [if leaves { "WINDWOOD_LEAVES" } else { "VERTEX_TANGENTS" }, "VERTEX_COLORS"];
-        for shader_def in shader_defs {
+        // The second coordinates carry the season of a leaf to its fragments.
+        let own: &[&str] = if leaves { &["WINDWOOD_LEAVES", "VERTEX_UVS_B"] } else { &["VERTEX_TANGENTS"] };
+        for &shader_def in own.iter().chain(&["VERTEX_COLORS"]) {
             descriptor.vertex.shader_defs.push(shader_def.into());
             if let Some(fragment) = &mut descriptor.fragment {
                 fragment.shader_defs.push(shader_def.into());

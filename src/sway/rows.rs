@@ -49,6 +49,9 @@ pub(super) struct FrameRow {
     /// 1 once there is a wind, 0 before.
     pub ready: u32,
     pub tree_count: u32,
+    /// Time of the year, 0..1.
+    pub year: f32,
+    pub padding: [f32; 3],
 }
 
 /// `TreeRow` of the shader: one tree. Without beams it is a row that nobody has.
@@ -94,7 +97,7 @@ mod tests {
     #[test]
     fn rows_have_the_sizes_that_the_shader_strides_by() {
         assert_eq!(size_of::<BeamRow>(), 48);
-        assert_eq!(size_of::<FrameRow>(), 48);
+        assert_eq!(size_of::<FrameRow>(), 64);
         assert_eq!(size_of::<TreeRow>(), 48);
     }
 }

@@ -10,7 +10,7 @@ use super::{
     rows::{FrameRow, POSE_BYTES, slot_rows},
     stand::Stand,
 };
-use crate::wind::WindClock;
+use crate::{tree::Season, wind::WindClock};
 use bevy::{asset::RenderAssetUsages, ecs::system::SystemParam, prelude::*, render::storage::ShaderBuffer};
 use bytemuck::Pod;
 use std::sync::Arc;
@@ -158,6 +158,7 @@ pub(super) fn upload_winds(
 pub(super) fn upload_frame(
     sway: Res<ActiveSway>,
     clock: Res<WindClock>,
+    season: Res<Season>,
     mut stand: ResMut<Stand>,
     mut uploads: Uploads,
     mut job: ResMut<PoseJob>,
@@ -183,10 +184,10 @@ pub(super) fn upload_frame(
     shared.posed = Some((clock.time_s, blend));
     job.trees = stand.rows().len() as u32;
     job.most_beams = stand.most_beams();
-    let row = frame_row(&sway, &clock, shared, job.trees);
+    let row = FrameRow { year: season.wrapped(), ..frame_row(&sway, &clock, shared, job.trees) };
     let frame = shared.frame.clone();
     if let Some(mut buffer) = uploads.buffers.get_mut(&frame) {
-        // Extraction takes the bytes away, so a few are allocated anew each frame: 48, whatever the forest.
+        // Extraction takes the bytes away, so a few are allocated anew each frame: 64, whatever the forest.
         buffer.data = Some(bytemuck::bytes_of(&row).to_vec());
     }
 }
@@ -206,6 +207,7 @@ fn frame_row(sway: &ActiveSway, clock: &WindClock, shared: &StandBuffers, trees:
         poses_before: halves[1],
         ready: u32::from(sway.is_ready() && shared.fits == [true; 2]),
         tree_count: trees,
+        ..default()
     }
 }
 

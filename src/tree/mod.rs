@@ -16,7 +16,9 @@ mod loader;
 pub mod mechanics;
 pub mod mesh;
 mod model;
+pub mod phenology;
 mod plugin;
+mod season;
 pub mod skeleton;
 pub mod species;
 pub mod texture;
@@ -27,6 +29,7 @@ pub use grove::{BakedSpecies, Grove, SpeciesBaked, bake_variants};
 pub use loader::SpeciesLoadError;
 pub use model::{SwayBounds, TreeModel};
 pub use plugin::TreePlugin;
+pub use season::Season;
 pub use species::{Species, SpeciesError};
 
 #[cfg(feature = "render")]

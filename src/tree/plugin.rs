@@ -5,6 +5,7 @@ use super::{
     grove::{Grove, SpeciesBaked, bake_species, grow_trees, receive_models},
     loader::SpeciesLoader,
     model::TreeModel,
+    season::Season,
     species::Species,
 };
 use crate::schedule::WindwoodSystems;
@@ -23,6 +24,8 @@ impl Plugin for TreePlugin {
             .register_type::<Articulated>()
             .register_type::<Beam>()
             .register_type::<Leaf>()
+            .register_type::<Season>()
+            .init_resource::<Season>()
             .init_resource::<Grove>()
             .add_message::<SpeciesBaked>()
             .add_systems(Update, (bake_species, receive_models, grow_trees).chain().in_set(WindwoodSystems::Grow));

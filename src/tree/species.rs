@@ -15,6 +15,7 @@ use super::{
     bark::Bark,
     foliage::Foliage,
     growth::{Growth, reeves::ReevesBlau},
+    phenology::Phenology,
 };
 
 /// One kind of tree.
@@ -33,6 +34,8 @@ pub struct Species {
     pub wood: Wood,
     /// What it carries.
     pub foliage: Foliage,
+    /// What its leaves do over the year.
+    pub phenology: Phenology,
 }
 
 impl Default for Species {
@@ -44,6 +47,7 @@ impl Default for Species {
             growth: Growth::ReevesBlau(ReevesBlau::default()),
             wood: Wood::default(),
             foliage: Foliage::default(),
+            phenology: Phenology::default(),
         }
     }
 }
@@ -108,7 +112,8 @@ impl Species {
         }
         self.growth.validate().map_err(|error| error.inside("growth"))?;
         self.wood.validate().map_err(|error| error.inside("wood"))?;
-        self.foliage.validate().map_err(|error| error.inside("foliage"))
+        self.foliage.validate().map_err(|error| error.inside("foliage"))?;
+        self.phenology.validate().map_err(|error| error.inside("phenology"))
     }
 }
 

@@ -62,6 +62,11 @@ struct Frame {
     // 0 until the first wind is there: trees stand at rest.
     ready: u32,
     tree_count: u32,
+    // Time of the year, 0..1.
+    year: f32,
+    padding_a: f32,
+    padding_b: f32,
+    padding_c: f32,
 }
 
 const NO_PARENT: u32 = 0xffffffffu;

@@ -8,6 +8,7 @@
 
 #ifdef WINDWOOD_LEAVES
 #import bevy_windwood::leaf
+#import bevy_windwood::season
 #endif
 
 #ifdef PREPASS_PIPELINE
@@ -43,8 +44,19 @@ fn tree_of(tag: u32) -> beam::TreeRow {
     return trees[tag & ((1u << TREE_BITS) - 1u)];
 }
 
+#ifdef WINDWOOD_LEAVES
+// How early a cluster is in the year, -1..1: alike within a branch and, less so, within a tree.
+fn lag_of(in: Vertex, tag: u32) -> f32 {
+    return (in.axis.w - 0.5) + (f32(tag >> TREE_BITS) / 255.0 - 0.5);
+}
+
+fn state_of(in: Vertex, tag: u32) -> season::LeafState {
+    return season::leaves(frame.year, lag_of(in, tag), in.sway.z);
+}
+#endif
+
 // The vertex where the wind has it, in tree-local space.
-fn swayed(in: Vertex, tree: beam::TreeRow, first_pose: u32, leaf_time_s: f32) -> beam::Motion {
+fn swayed(in: Vertex, tag: u32, tree: beam::TreeRow, first_pose: u32, leaf_time_s: f32) -> beam::Motion {
     let index = u32(in.sway.x + 0.5);
     let row = beams[tree.first_beam + index];
     let pose = poses[first_pose + tree.first_pose + index];
@@ -54,7 +66,8 @@ fn swayed(in: Vertex, tree: beam::TreeRow, first_pose: u32, leaf_time_s: f32) ->
     let wind = poses[first_pose + tree.first_pose + tree.beam_count].tip_angle.xyz;
     let turn = leaf::turn(beam::rotate(carried.rotation, in.axis.xyz), wind, leaf_time_s, in.sway.z);
     let rotation = beam::then(carried.rotation, turn);
-    return beam::Motion(carried.position + beam::rotate(rotation, in.position - in.anchor.xyz), rotation);
+    let reach = (in.position - in.anchor.xyz) * state_of(in, tag).size;
+    return beam::Motion(carried.position + beam::rotate(rotation, reach), rotation);
 #else
     return beam::carry(row, pose, in.sway.y, in.position);
 #endif
@@ -66,7 +79,7 @@ fn vertex(in: Vertex) -> VertexOutput {
     let world_from_local = mesh_functions::get_world_from_local(in.instance_index);
     let tag = mesh_functions::get_tag(in.instance_index);
     let tree = tree_of(tag);
-    let now = swayed(in, tree, frame.poses_now, frame.leaf_time.x);
+    let now = swayed(in, tag, tree, frame.poses_now, frame.leaf_time.x);
 
     out.world_position = world_from_local * vec4(now.position, 1.0);
     out.position = position_world_to_clip(out.world_position.xyz);
@@ -77,6 +90,14 @@ fn vertex(in: Vertex) -> VertexOutput {
 
 #ifdef VERTEX_UVS_A
     out.uv = in.uv;
+#endif
+
+#ifdef VERTEX_UVS_B
+#ifdef WINDWOOD_LEAVES
+    // Youth (negative) or autumn (positive), and where between the autumn's two colours.
+    let state = state_of(in, tag);
+    out.uv_b = vec2(state.autumn - state.youth, saturate(0.5 + lag_of(in, tag) + 0.6 * (in.sway.z - 0.5)));
+#endif
 #endif
 
     let normal = beam::rotate(beam::then(now.rotation, tree.rotation), in.normal);
@@ -102,7 +123,7 @@ fn vertex(in: Vertex) -> VertexOutput {
 #ifdef PREPASS_PIPELINE
 #ifdef MOTION_VECTOR_PREPASS
     let before_from_local = mesh_functions::get_previous_world_from_local(in.instance_index);
-    let before = swayed(in, tree, frame.poses_before, frame.leaf_time.y);
+    let before = swayed(in, tag, tree, frame.poses_before, frame.leaf_time.y);
     out.previous_world_position = before_from_local * vec4(before.position, 1.0);
 #endif
 #endif

@@ -1,0 +1,31 @@
+// The colour of leaves over the year; wood is shaded as any standard material. The prepass and the shadow pass need only
+// the mask and run Bevy's own fragment shader.
+
+#import bevy_pbr::forward_io::{FragmentOutput, VertexOutput}
+#import bevy_pbr::pbr_fragment::pbr_input_from_standard_material
+#import bevy_pbr::pbr_functions::{alpha_discard, apply_pbr_lighting, main_pass_post_lighting_processing}
+
+#ifdef WINDWOOD_LEAVES
+#import bevy_windwood::season
+#endif
+
+#ifdef VISIBILITY_RANGE_DITHER
+#import bevy_pbr::pbr_functions::visibility_range_dither
+#endif
+
+@fragment
+fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
+#ifdef VISIBILITY_RANGE_DITHER
+    visibility_range_dither(in.position, in.visibility_range_dither);
+#endif
+    var pbr_input = pbr_input_from_standard_material(in, is_front);
+    pbr_input.material.base_color = alpha_discard(pbr_input.material, pbr_input.material.base_color);
+#ifdef WINDWOOD_LEAVES
+    let summer = pbr_input.material.base_color.rgb;
+    pbr_input.material.base_color = vec4(season::recoloured(summer, in.uv_b.x, in.uv_b.y), pbr_input.material.base_color.a);
+#endif
+    var out: FragmentOutput;
+    out.color = apply_pbr_lighting(pbr_input);
+    out.color = main_pass_post_lighting_processing(pbr_input, out.color);
+    return out;
+}

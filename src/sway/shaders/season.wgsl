@@ -1,0 +1,70 @@
+// What leaves do over the year: the twin of `tree/phenology.rs`, which explains it.
+
+#define_import_path bevy_windwood::season
+
+// One species' `Phenology`, see `SeasonUniform` in `sway/material.rs`.
+struct Phenology {
+    flush: f32,
+    flush_length: f32,
+    turn: f32,
+    turn_length: f32,
+    fall: f32,
+    fall_length: f32,
+    patchiness: f32,
+    // 1 if leaves stay over winter.
+    evergreen: f32,
+    // Light, and in w the luminance of the leaf in summer.
+    spring: vec4<f32>,
+    autumn_first: vec4<f32>,
+    autumn_last: vec4<f32>,
+}
+
+struct LeafState {
+    size: f32,
+    youth: f32,
+    autumn: f32,
+}
+
+@group(#{MATERIAL_BIND_GROUP}) @binding(105) var<uniform> phenology: Phenology;
+
+// `DROP` and `YOUTH` of `tree/phenology.rs`; a test holds them equal.
+const DROP: f32 = 0.014;
+const YOUTH: f32 = 0.13;
+
+fn leaves(year: f32, lag: f32, rank: f32) -> LeafState {
+    let own = year + phenology.patchiness * lag;
+    let youth = 1.0 - smoothstep(phenology.flush, phenology.flush + YOUTH, own);
+    if phenology.evergreen > 0.5 {
+        return LeafState(1.0, youth * smoothstep(phenology.flush - 0.5 * phenology.flush_length, phenology.flush, own), 0.0);
+    }
+    let flush = 0.5 * phenology.flush_length;
+    let unfolded = smoothstep(phenology.flush - flush, phenology.flush + flush, own);
+    let falls = min(phenology.fall + phenology.fall_length * (rank - 0.5), 1.0 - DROP);
+    let turn = 0.5 * phenology.turn_length;
+    return LeafState(
+        unfolded * (1.0 - smoothstep(falls, falls + DROP, year)),
+        youth,
+        smoothstep(phenology.turn - turn, phenology.turn + turn, own),
+    );
+}
+
+fn luminance(light: vec3<f32>) -> f32 {
+    return dot(light, vec3(0.2126, 0.7152, 0.0722));
+}
+
+// How much of a texel is leaf and not twig: leaves are green.
+fn leafness(light: vec3<f32>) -> f32 {
+    let sum = light.r + light.g + light.b;
+    return saturate(5.0 * (light.g - 0.5 * (light.r + light.b)) / max(sum, 1e-5));
+}
+
+// A texel of a leaf in summer, as it is in another season. `change` is youth (negative) or autumn (positive), `tone` where
+// between the two autumn colours. Light and dark of the texel stay.
+fn recoloured(summer: vec3<f32>, change: f32, tone: f32) -> vec3<f32> {
+    var colour = phenology.spring.rgb;
+    if change > 0.0 {
+        colour = mix(phenology.autumn_first.rgb, phenology.autumn_last.rgb, tone);
+    }
+    let lightness = min(luminance(summer) / max(phenology.spring.w, 1e-4), 4.0);
+    return mix(summer, colour * lightness, abs(change) * leafness(summer));
+}
