@@ -11,14 +11,14 @@ fn oak() -> Species {
 
 fn growth(criterion: &mut Criterion) {
     let oak = oak();
-    criterion.bench_function("grow/oak", |bencher| bencher.iter(|| grow(black_box(&oak), 1)));
+    criterion.bench_function("grow/oak", |bencher| bencher.iter(|| grow(black_box(&oak), oak.age.mature_years, 1)));
 }
 
 /// Bakes as many oaks as make 50,000 vertices: skeleton, mechanics, meshes and bounds.
 fn bake(criterion: &mut Criterion) {
     let oak = oak();
     let vertices = |seed| {
-        let model = TreeModel::bake(&oak, seed);
+        let model = TreeModel::bake(&oak, oak.age.mature_years, seed);
         model.wood.positions.len() + model.leaves.positions.len()
     };
     let mut total = 0;

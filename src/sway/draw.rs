@@ -59,10 +59,7 @@ pub(super) fn dress_trees(
     let renewed: Vec<AssetId<Species>> = dressed.read().map(|message| message.0).collect();
     let mut dress = |(entity, tree, grown, children): (Entity, &Tree, &Grown, Option<&Children>)| {
         let Some(looks) = wardrobe.looks.get(&tree.species.id()) else { return };
-        let Some(variant) = looks.variants.get(grown.variant) else { return };
-        if variant.model != grown.model.id() {
-            return;
-        }
+        let Some(variant) = looks.variants.get(&grown.model.id()) else { return };
         for old in children.into_iter().flatten().filter(|child| foliage.contains(**child)) {
             commands.entity(*old).despawn();
         }

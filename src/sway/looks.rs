@@ -11,7 +11,7 @@ use super::{
     upload::StandBuffers,
 };
 use crate::tree::{
-    BakedSpecies, Grove, Species, SpeciesBaked, TreeModel,
+    Grove, Species, SpeciesBaked, TreeModel,
     bark::{BarkTextures, bark_textures},
     leaf_mesh::LeafVertices,
     leaf_texture::leaf_texture,
@@ -23,6 +23,7 @@ use bevy::{
     camera::primitives::Aabb,
     image::{ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor},
     mesh::{Indices, PrimitiveTopology},
+    platform::collections::HashMap,
     prelude::*,
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
@@ -30,9 +31,11 @@ use bevy::{
 
 /// A species, ready to be put on trees.
 pub(super) struct SpeciesLooks {
+    /// Which of the species' generations bark and foliage are of.
+    generation: u64,
     pub bark: Outfit,
     pub foliage: Outfit,
-    pub variants: Vec<VariantLook>,
+    pub variants: HashMap<AssetId<TreeModel>, VariantLook>,
 }
 
 /// The material of a draw: swaying, or still where a tree cannot be posed.
@@ -41,9 +44,9 @@ pub(super) struct Outfit {
     pub still: Handle<StandardMaterial>,
 }
 
-/// One variant of a species.
+/// One variant of a species at one age.
 pub(super) struct VariantLook {
-    pub model: AssetId<TreeModel>,
+    step: i32,
     pub wood: Handle<Mesh>,
     pub leaves: Option<Handle<Mesh>>,
     pub bounds: Aabb,
@@ -51,15 +54,22 @@ pub(super) struct VariantLook {
 
 /// What is prepared in the background.
 struct Cut {
-    bark: BarkTextures,
-    leaf: TextureData,
+    /// Painted once for all ages.
+    textures: Option<(BarkTextures, TextureData)>,
     meshes: Vec<(Mesh, Option<Mesh>)>,
+}
+
+struct Tailored {
+    species: AssetId<Species>,
+    step: i32,
+    generation: u64,
+    task: Task<Cut>,
 }
 
 /// Looks that are being prepared.
 #[derive(Resource, Default)]
 pub(super) struct Tailoring {
-    tasks: Vec<(AssetId<Species>, u64, Task<Cut>)>,
+    tasks: Vec<Tailored>,
 }
 
 /// Starts preparing the looks of species that were baked, and forgets those that are gone.
@@ -72,28 +82,35 @@ pub(super) fn start_tailoring(
     mut wardrobe: ResMut<Wardrobe>,
     mut stand: ResMut<Stand>,
 ) {
-    for &SpeciesBaked(id) in baked.read() {
+    for &SpeciesBaked { species: id, step } in baked.read() {
         let Some(entry) = grove.get(id) else { continue };
+        let Some(stage) = entry.stages.get(&step) else { continue };
         let species = entry.species.clone();
-        let variants: Vec<TreeModel> = entry.models.iter().filter_map(|model| models.get(model).cloned()).collect();
-        tailoring.tasks.retain(|(other, ..)| *other != id);
-        let task = AsyncComputeTaskPool::get().spawn(async move { cut(&species, variants) });
-        tailoring.tasks.push((id, entry.generation, task));
+        let generation = stage.generation;
+        let variants: Vec<TreeModel> = stage.models.iter().filter_map(|model| models.get(model).cloned()).collect();
+        tailoring.tasks.retain(|other| (other.species, other.step) != (id, step));
+        let painted = wardrobe.looks.get(&id).is_some_and(|looks| looks.generation == generation)
+            || tailoring.tasks.iter().any(|other| (other.species, other.generation) == (id, generation));
+        let task = AsyncComputeTaskPool::get().spawn(async move { cut(&species, !painted, variants) });
+        tailoring.tasks.push(Tailored { species: id, step, generation, task });
     }
     for event in events.read() {
         if let AssetEvent::Removed { id } = event {
-            tailoring.tasks.retain(|(other, ..)| other != id);
+            tailoring.tasks.retain(|other| other.species != *id);
             if let Some(looks) = wardrobe.looks.remove(id) {
-                looks.variants.iter().for_each(|variant| stand.remove_model(variant.model));
+                looks.variants.into_keys().for_each(|model| stand.remove_model(model));
             }
         }
     }
 }
 
-fn cut(species: &Species, variants: Vec<TreeModel>) -> Cut {
+fn cut(species: &Species, painting: bool, variants: Vec<TreeModel>) -> Cut {
+    let paint = || {
+        let bark = bark_textures(&species.wood.bark, species.seed);
+        (bark, leaf_texture(&species.foliage, species.seed))
+    };
     Cut {
-        bark: bark_textures(&species.wood.bark, species.seed),
-        leaf: leaf_texture(&species.foliage, species.seed),
+        textures: painting.then(paint),
         meshes: variants.into_iter().map(|model| (wood_mesh(model.wood), leaf_mesh(model.leaves))).collect(),
     }
 }
@@ -122,43 +139,83 @@ pub(super) fn finish_tailoring(
     if tailoring.tasks.is_empty() {
         return;
     }
-    tailoring.tasks.retain_mut(|(id, generation, task)| {
-        let Some(cut) = block_on(poll_once(task)) else { return true };
-        if let Some(entry) = grove.get(*id).filter(|entry| entry.generation == *generation) {
-            let looks = atelier.sew(entry, cut);
-            if let Some(old) = wardrobe.looks.insert(*id, looks) {
-                old.variants.iter().for_each(|variant| atelier.stand.remove_model(variant.model));
+    // In the order in which they were begun: the first of a species brings the textures for all.
+    let mut waiting = Vec::new();
+    for mut tailored in std::mem::take(&mut tailoring.tasks) {
+        let Tailored { species, step, generation, .. } = tailored;
+        let first_is_missing = waiting.iter().any(|other: &Tailored| other.species == species);
+        let cut = if first_is_missing { None } else { block_on(poll_once(&mut tailored.task)) };
+        let Some(cut) = cut else {
+            waiting.push(tailored);
+            continue;
+        };
+        let stage = grove.get(species).and_then(|entry| Some((entry, entry.stages.get(&step)?)));
+        let Some((entry, stage)) = stage.filter(|(_, stage)| stage.generation == generation) else { continue };
+        if let Some(textures) = cut.textures {
+            let looks = atelier.outfits(&entry.species, generation, &textures);
+            let old = wardrobe.looks.insert(species, looks);
+            if let (Some(old), Some(looks)) = (old, wardrobe.looks.get_mut(&species)) {
+                looks.variants = old.variants;
             }
-            dressed.write(SpeciesDressed(*id));
         }
-        false
-    });
+        let Some(looks) = wardrobe.looks.get_mut(&species) else { continue };
+        atelier.sew(looks, step, &stage.models, cut.meshes);
+        dressed.write(SpeciesDressed(species));
+    }
+    tailoring.tasks = waiting;
 }
 
 impl Atelier<'_> {
-    fn sew(&mut self, entry: &BakedSpecies, cut: Cut) -> SpeciesLooks {
-        let mut variants = Vec::new();
-        for (handle, (wood, leaves)) in entry.models.iter().zip(cut.meshes) {
+    /// Makes the meshes of one age, in place of those that were there.
+    fn sew(
+        &mut self,
+        looks: &mut SpeciesLooks,
+        step: i32,
+        models: &[Handle<TreeModel>],
+        meshes: Vec<(Mesh, Option<Mesh>)>,
+    ) {
+        looks.variants.retain(|model, variant| {
+            let stays = variant.step != step;
+            if !stays {
+                self.stand.remove_model(*model);
+            }
+            stays
+        });
+        for (handle, (wood, leaves)) in models.iter().zip(meshes) {
             let Some(model) = self.models.get(handle) else { continue };
             self.stand.add_model(handle.id(), model.beams.iter().map(BeamRow::from));
-            variants.push(VariantLook {
-                model: handle.id(),
+            let variant = VariantLook {
+                step,
                 wood: self.meshes.add(wood),
                 leaves: leaves.map(|leaves| self.meshes.add(leaves)),
                 bounds: Aabb::from_min_max(model.bounds.min, model.bounds.max),
-            });
+            };
+            looks.variants.insert(handle.id(), variant);
         }
+    }
+
+    fn outfits(
+        &mut self,
+        species: &Species,
+        generation: u64,
+        (bark, leaf): &(BarkTextures, TextureData),
+    ) -> SpeciesLooks {
         let extension = SwayExtension {
             poses: self.shared.poses.clone(),
             beams: self.shared.beams.clone(),
             trees: self.shared.trees.clone(),
             frame: self.shared.frame.clone(),
-            leaf: LeafUniform::from(&entry.species.foliage.response),
-            season: SeasonUniform::new(&entry.species.phenology, entry.species.foliage.leaf.colour),
+            leaf: LeafUniform::from(&species.foliage.response),
+            season: SeasonUniform::new(&species.phenology, species.foliage.leaf.colour),
         };
-        let bark = self.bark_material(&cut.bark);
-        let foliage = self.foliage_material(&entry.species, &cut.leaf);
-        SpeciesLooks { bark: self.outfit(bark, extension.clone()), foliage: self.outfit(foliage, extension), variants }
+        let bark = self.bark_material(bark);
+        let foliage = self.foliage_material(species, leaf);
+        SpeciesLooks {
+            generation,
+            bark: self.outfit(bark, extension.clone()),
+            foliage: self.outfit(foliage, extension),
+            variants: HashMap::default(),
+        }
     }
 
     fn outfit(&mut self, base: StandardMaterial, extension: SwayExtension) -> Outfit {

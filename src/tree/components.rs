@@ -15,17 +15,26 @@ pub struct Tree {
     pub species: Handle<Species>,
     /// Chooses among the species' variants and tints. `None` takes it from the place, so that equal forests look equal.
     pub seed: Option<u64>,
+    /// Age, years; `None` is the species' mature age. Clamped to what the species allows; not every year has a model of
+    /// its own, so a tree that ages as time goes by grows in steps.
+    pub age_years: Option<f32>,
 }
 
 impl Tree {
     /// A tree whose variant follows from its place.
     pub fn new(species: Handle<Species>) -> Self {
-        Self { species, seed: None }
+        Self { species, seed: None, age_years: None }
     }
 
     /// Sets the seed that chooses the variant.
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.seed = Some(seed);
+        self
+    }
+
+    /// Sets the age.
+    pub fn with_age(mut self, years: f32) -> Self {
+        self.age_years = Some(years);
         self
     }
 

@@ -1,7 +1,11 @@
 //! From species to models, in the background, and from models to trees.
+//!
+//! Trees of a species share models: one for each variant, at each of a ladder of ages. Only the ages that are asked for
+//! are baked.
 
 use super::{
     components::{Grown, Tree},
+    growth::age::Age,
     model::TreeModel,
     species::Species,
 };
@@ -11,31 +15,47 @@ use bevy::{
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
 };
 use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
+use std::collections::BTreeMap;
+
+/// From one step of the ladder of ages to the next: a tree is drawn as one at most 16% older or younger, which is less
+/// than trees of one age differ.
+const AGE_STEP: f32 = 1.35;
 
 /// The baked species. An entry lives as long as its species asset.
 #[derive(Resource, Default)]
 pub struct Grove {
     species: HashMap<AssetId<Species>, BakedSpecies>,
     baking: Vec<Baking>,
+    bakes: u64,
 }
 
 /// A species and its models.
 pub struct BakedSpecies {
-    /// The species as it was baked; a change on disk bakes it anew.
+    /// The species as it was last found valid; a change on disk bakes it anew.
     pub species: Species,
+    /// Grows with each change of the species.
+    pub generation: u64,
+    /// Its models, by step of age.
+    pub stages: BTreeMap<i32, BakedStage>,
+}
+
+/// The models of a species at one age.
+pub struct BakedStage {
     /// One model a variant.
     pub models: Vec<Handle<TreeModel>>,
-    /// Differs between bakes, so that what was made from an older one can be told.
+    /// Which of the species' generations they are of; older ones stay until newer are baked.
     pub generation: u64,
 }
 
 struct Baking {
     id: AssetId<Species>,
-    task: Task<(Species, Vec<TreeModel>)>,
+    step: i32,
+    generation: u64,
+    task: Task<Vec<TreeModel>>,
 }
 
 impl Grove {
-    /// A species that has been baked.
+    /// A species that has been found valid.
     pub fn get(&self, id: AssetId<Species>) -> Option<&BakedSpecies> {
         self.species.get(&id)
     }
@@ -45,23 +65,66 @@ impl Grove {
         !self.baking.is_empty()
     }
 
-    /// Number of baked species.
+    /// Number of species.
     pub fn len(&self) -> usize {
         self.species.len()
     }
 
-    /// Whether nothing has been baked.
+    /// Whether there are no species.
     pub fn is_empty(&self) -> bool {
         self.species.is_empty()
     }
+
+    /// Takes a valid species in, and bakes anew the ages that its forerunner had.
+    fn adopt(&mut self, id: AssetId<Species>, species: Species) {
+        self.bakes += 1;
+        let generation = self.bakes;
+        let mut steps: Vec<i32> =
+            self.baking.iter().filter(|baking| baking.id == id).map(|baking| baking.step).collect();
+        self.baking.retain(|baking| baking.id != id);
+        let stages = self.species.remove(&id).map(|old| old.stages).unwrap_or_default();
+        steps.extend(stages.keys());
+        self.species.insert(id, BakedSpecies { species, generation, stages });
+        steps.into_iter().for_each(|step| self.bake(id, step));
+    }
+
+    /// Starts baking a stage, unless it is there or on its way.
+    fn bake(&mut self, id: AssetId<Species>, step: i32) {
+        let Some(entry) = self.species.get(&id) else { return };
+        let generation = entry.generation;
+        let is_there = entry.stages.get(&step).is_some_and(|stage| stage.generation == generation);
+        if is_there || self.baking.iter().any(|baking| (baking.id, baking.step) == (id, step)) {
+            return;
+        }
+        let species = entry.species.clone();
+        let task =
+            AsyncComputeTaskPool::get().spawn(async move { bake_variants(&species, age_of_step(&species.age, step)) });
+        self.baking.push(Baking { id, step, generation, task });
+    }
 }
 
-/// Message: a species has been baked, for the first time or anew.
-#[derive(Message, Clone, Copy, Debug)]
-pub struct SpeciesBaked(pub AssetId<Species>);
+/// The step of the ladder nearest to an age; the mature age is step 0.
+fn step_of_age(age: &Age, years: Option<f32>) -> i32 {
+    let years = years.filter(|years| years.is_finite()).unwrap_or(age.mature_years);
+    let years = years.clamp(Age::YOUNGEST_YEARS, age.oldest_years);
+    ((years / age.mature_years).ln() / AGE_STEP.ln()).round() as i32
+}
 
-/// Starts a bake for every species that was loaded or changed, and forgets those whose asset is gone.
-pub(super) fn bake_species(
+fn age_of_step(age: &Age, step: i32) -> f32 {
+    (age.mature_years * AGE_STEP.powi(step)).clamp(Age::YOUNGEST_YEARS, age.oldest_years)
+}
+
+/// Message: a species has been baked at one age, for the first time or anew.
+#[derive(Message, Clone, Copy, Debug)]
+pub struct SpeciesBaked {
+    /// The species.
+    pub species: AssetId<Species>,
+    /// Key of the stage among its [`BakedSpecies::stages`].
+    pub step: i32,
+}
+
+/// Takes in every species that was loaded or changed, and forgets those whose asset is gone.
+pub(super) fn adopt_species(
     mut events: MessageReader<AssetEvent<Species>>,
     species: Res<Assets<Species>>,
     mut grove: ResMut<Grove>,
@@ -70,17 +133,10 @@ pub(super) fn bake_species(
         match *event {
             AssetEvent::Added { id } | AssetEvent::Modified { id } => {
                 let Some(species) = species.get(id).cloned() else { continue };
-                if let Err(error) = species.validate() {
-                    warn!("species `{}`: {error}; the last good one stays", species.name);
-                    continue;
+                match species.validate() {
+                    Ok(()) => grove.adopt(id, species),
+                    Err(error) => warn!("species `{}`: {error}; the last good one stays", species.name),
                 }
-                // Of two bakes of one species the newer counts.
-                grove.baking.retain(|baking| baking.id != id);
-                let task = AsyncComputeTaskPool::get().spawn(async move {
-                    let models = bake_variants(&species);
-                    (species, models)
-                });
-                grove.baking.push(Baking { id, task });
             }
             AssetEvent::Removed { id } => {
                 grove.baking.retain(|baking| baking.id != id);
@@ -91,10 +147,10 @@ pub(super) fn bake_species(
     }
 }
 
-/// Bakes all variants of a species; each has its own seed, drawn from the species' own.
-pub fn bake_variants(species: &Species) -> Vec<TreeModel> {
+/// Bakes all variants of a species at an age, years; each has its own seed, drawn from the species' own.
+pub fn bake_variants(species: &Species, age_years: f32) -> Vec<TreeModel> {
     let mut seeds = Xoshiro256PlusPlus::seed_from_u64(species.seed);
-    (0..species.variants).map(|_| TreeModel::bake(species, seeds.next_u64())).collect()
+    (0..species.variants).map(|_| TreeModel::bake(species, age_years, seeds.next_u64())).collect()
 }
 
 /// Takes over what has been baked.
@@ -102,48 +158,76 @@ pub(crate) fn receive_models(
     mut grove: ResMut<Grove>,
     mut models: ResMut<Assets<TreeModel>>,
     mut baked: MessageWriter<SpeciesBaked>,
-    mut generation: Local<u64>,
 ) {
     if grove.baking.is_empty() {
         return;
     }
-    let mut finished = Vec::new();
-    grove.baking.retain_mut(|baking| match block_on(poll_once(&mut baking.task)) {
-        Some(output) => {
-            finished.push((baking.id, output));
-            false
+    let Grove { species, baking, .. } = &mut *grove;
+    baking.retain_mut(|Baking { id, step, generation, task }| {
+        let Some(variants) = block_on(poll_once(task)) else { return true };
+        if let Some(entry) = species.get_mut(id) {
+            let models = variants.into_iter().map(|model| models.add(model)).collect();
+            entry.stages.insert(*step, BakedStage { models, generation: *generation });
+            baked.write(SpeciesBaked { species: *id, step: *step });
         }
-        None => true,
+        false
     });
-    for (id, (species, variants)) in finished {
-        *generation += 1;
-        let models = variants.into_iter().map(|model| models.add(model)).collect();
-        grove.species.insert(id, BakedSpecies { species, models, generation: *generation });
-        baked.write(SpeciesBaked(id));
-    }
 }
 
-/// Gives new trees their model, and trees of a species that was baked anew their new one.
+/// Gives trees that are new, were changed or are of a stage that was baked anew their model, and asks for those models
+/// that are not there yet.
 pub(super) fn grow_trees(
     mut commands: Commands,
-    grove: Res<Grove>,
+    mut grove: ResMut<Grove>,
     mut baked: MessageReader<SpeciesBaked>,
-    trees: Query<(Entity, &Tree, &Transform)>,
+    trees: Query<(Entity, &Tree, &Transform, Option<&Grown>)>,
     young: Query<Entity, (With<Tree>, Or<(Changed<Tree>, Without<Grown>)>)>,
 ) {
-    let renewed: Vec<AssetId<Species>> = baked.read().map(|message| message.0).collect();
-    let mut grow = |(entity, tree, transform): (Entity, &Tree, &Transform)| {
-        let Some(species) = grove.get(tree.species.id()) else { return };
+    let renewed: Vec<AssetId<Species>> = baked.read().map(|message| message.species).collect();
+    let mut grow = |(entity, tree, transform, grown): (Entity, &Tree, &Transform, Option<&Grown>)| {
+        let id = tree.species.id();
+        let Some(entry) = grove.get(id) else { return };
+        let step = step_of_age(&entry.species.age, tree.age_years);
+        let Some(stage) = entry.stages.get(&step) else { return grove.bypass_change_detection().bake(id, step) };
         let seed = tree.seed_at(transform.translation);
-        let Some(variant) = seed.checked_rem(species.models.len() as u64).map(|variant| variant as usize) else {
+        let Some(variant) = seed.checked_rem(stage.models.len() as u64).map(|variant| variant as usize) else {
             return;
         };
-        commands.entity(entity).insert(Grown { model: species.models[variant].clone(), variant, seed });
+        let growing = Grown { model: stage.models[variant].clone(), variant, seed };
+        if grown != Some(&growing) {
+            commands.entity(entity).insert(growing);
+        }
     };
     if renewed.is_empty() {
         young.iter().filter_map(|entity| trees.get(entity).ok()).for_each(&mut grow);
     } else {
         let due = |tree: &Tree, entity| renewed.contains(&tree.species.id()) || young.contains(entity);
-        trees.iter().filter(|(entity, tree, _)| due(tree, *entity)).for_each(&mut grow);
+        trees.iter().filter(|(entity, tree, ..)| due(tree, *entity)).for_each(&mut grow);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ages_are_rounded_by_less_than_a_sixth() {
+        let age = Age::default();
+        for years in 1..500 {
+            let years = years as f32;
+            let drawn = age_of_step(&age, step_of_age(&age, Some(years)));
+            assert!((drawn / years).ln().abs() <= 0.5 * AGE_STEP.ln() + 1e-4, "{years} is drawn as {drawn}");
+        }
+        assert_eq!(step_of_age(&age, None), 0);
+        assert_eq!(age_of_step(&age, 0), age.mature_years);
+    }
+
+    #[test]
+    fn odd_ages_are_ages_all_the_same() {
+        let age = Age::default();
+        for years in [f32::NAN, f32::INFINITY, -7.0, 0.0, 1e30] {
+            let drawn = age_of_step(&age, step_of_age(&age, Some(years)));
+            assert!((Age::YOUNGEST_YEARS..=age.oldest_years).contains(&drawn), "{years} is drawn as {drawn}");
+        }
     }
 }

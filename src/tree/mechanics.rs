@@ -268,7 +268,7 @@ mod tests {
 
     fn trunk(name: &str) -> (Species, Skeleton, BeamDynamics) {
         let species = shipped(name);
-        let skeleton = grow(&species, 1);
+        let skeleton = grow(&species, species.age.mature_years, 1);
         let trunk = beam_dynamics(&species, &skeleton)[0];
         (species, skeleton, trunk)
     }

@@ -8,7 +8,7 @@
 use bevy::math::Vec3;
 
 use super::{
-    growth::{Growth, reeves::Trunk},
+    growth::reeves::Trunk,
     skeleton::{Skeleton, SkeletonBeam},
     species::Species,
     tube::{Ring, Tube, inradius},
@@ -44,7 +44,6 @@ const LONGEST_RING_STEP_M: f32 = 2.2;
 #[must_use]
 pub fn wood(species: &Species, skeleton: &Skeleton) -> WoodVertices {
     let mut vertices = WoodVertices::default();
-    let Growth::ReevesBlau(growth) = &species.growth;
     let continuations = skeleton.continuations();
     let mut continues = vec![false; skeleton.beams.len()];
     continuations.iter().flatten().for_each(|&next| continues[next as usize] = true);
@@ -55,7 +54,7 @@ pub fn wood(species: &Species, skeleton: &Skeleton) -> WoodVertices {
         let branch = Branch { skeleton, chain: &chain };
         let base_radius_m = skeleton.beams[first].base_radius_m;
         let mut tube = Tube::new(base_radius_m, species.wood.bark.tile_m);
-        branch.rings(&growth.trunk, |ring| tube.push(ring));
+        branch.rings(&skeleton.trunk, |ring| tube.push(ring));
         tube.write(&mut vertices, |point| species.foliage.light(skeleton.envelope.depth(point)));
     }
     vertices
@@ -95,7 +94,8 @@ impl Branch<'_> {
 
     /// The trunk's rings up to the end of its flare; answers the place on the beam that they reach.
     fn root_rings(&self, trunk: &Trunk, push: &mut impl FnMut(Ring)) -> f32 {
-        let beam = &self.skeleton.beams[0];
+        let index = self.chain[0];
+        let beam = &self.skeleton.beams[index];
         let height_m = trunk.flare_height_m;
         let mut covered = 0.0;
         for share in [-1.0, 0.0, 0.3, 0.7, 1.3, 2.2, 3.5] {
@@ -105,7 +105,7 @@ impl Branch<'_> {
                 break;
             }
             let flare = trunk.flare * (-at_m.max(0.0) / height_m).exp();
-            let mut ring = ring(beam, 0, s.max(0.0));
+            let mut ring = ring(beam, index, s.max(0.0));
             ring.centre = beam.path(s.max(0.0)) + beam.direction * at_m.min(0.0);
             ring.radius_m *= 1.0 + flare;
             ring.lobes = (trunk.buttresses, 0.6 * flare / (1.0 + flare));

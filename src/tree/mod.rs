@@ -25,7 +25,7 @@ pub mod texture;
 mod tube;
 
 pub use components::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Tree, TreeBeams, TreeLeaves};
-pub use grove::{BakedSpecies, Grove, SpeciesBaked, bake_variants};
+pub use grove::{BakedSpecies, BakedStage, Grove, SpeciesBaked, bake_variants};
 pub use loader::SpeciesLoadError;
 pub use model::{SwayBounds, TreeModel};
 pub use plugin::TreePlugin;

@@ -35,9 +35,9 @@ pub struct SwayBounds {
 }
 
 impl TreeModel {
-    /// Grows and bakes the variant of `species` that belongs to `seed`.
-    pub fn bake(species: &Species, seed: u64) -> Self {
-        let skeleton = grow(species, seed);
+    /// Grows and bakes the variant of `species` that belongs to `seed`, at an age.
+    pub fn bake(species: &Species, age_years: f32, seed: u64) -> Self {
+        let skeleton = grow(species, age_years, seed);
         let beams = beam_dynamics(species, &skeleton);
         let wood = wood(species, &skeleton);
         let leaves = leaves(species, &skeleton);
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn no_pose_leaves_the_bounds() {
         for seed in 0..3 {
-            let model = TreeModel::bake(&Species::default(), seed);
+            let model = TreeModel::bake(&Species::default(), 120.0, seed);
             let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
             let mut poses = vec![BeamPose::REST; model.beams.len()];
             for _ in 0..20 {

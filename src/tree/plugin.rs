@@ -2,7 +2,7 @@
 
 use super::{
     components::{Articulated, Beam, Leaf, Tree},
-    grove::{Grove, SpeciesBaked, bake_species, grow_trees, receive_models},
+    grove::{Grove, SpeciesBaked, adopt_species, grow_trees, receive_models},
     loader::SpeciesLoader,
     model::TreeModel,
     season::Season,
@@ -28,6 +28,6 @@ impl Plugin for TreePlugin {
             .init_resource::<Season>()
             .init_resource::<Grove>()
             .add_message::<SpeciesBaked>()
-            .add_systems(Update, (bake_species, receive_models, grow_trees).chain().in_set(WindwoodSystems::Grow));
+            .add_systems(Update, (adopt_species, receive_models, grow_trees).chain().in_set(WindwoodSystems::Grow));
     }
 }

@@ -8,15 +8,15 @@ use bevy::math::Vec3;
 use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
 
 use super::{
-    foliage,
-    growth::{Growth, envelope::Envelope, pipes, reeves},
+    foliage::{self, Foliage},
+    growth::{envelope::Envelope, grower::Wood, pipes, reeves::Trunk},
     species::Species,
 };
 
 /// A straight or gently bowed piece of wood.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SkeletonBeam {
-    /// Index of the beam that carries it, always smaller than its own; `None` for the trunk.
+    /// Index of the beam that carries it, always smaller than its own; `None` for a stem from the ground.
     pub parent: Option<u32>,
     /// Where it sits on the parent, 0 at its root to 1 at its tip.
     pub attach: f32,
@@ -83,12 +83,14 @@ pub struct LeafCluster {
 /// One individual of a species.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skeleton {
-    /// Beams, parents first; the first is the trunk.
+    /// Beams, parents first; the first is the trunk, or the first stem of a shrub.
     pub beams: Vec<SkeletonBeam>,
     /// Sprays of leaves.
     pub clusters: Vec<LeafCluster>,
     /// What bounded the growth, at this individual's size.
     pub envelope: Envelope,
+    /// The trunk's numbers at this individual's age: its flare for the mesh.
+    pub trunk: Trunk,
 }
 
 impl Skeleton {
@@ -116,13 +118,36 @@ pub(super) fn continuations(beams: &[SkeletonBeam]) -> Vec<Option<u32>> {
     next
 }
 
-/// Grows one individual. The same species and seed give the same tree, on every run.
+/// Sprays of a young tree are shoots no longer than this share of its height.
+const LONGEST_SPRAY_SHARE: f32 = 0.3;
+
+/// Grows one individual of `species` as it is at `age_years`, which is clamped to 1 year and the oldest age of the
+/// species. The same species, age and seed give the same tree, on every run.
 #[must_use]
-pub fn grow(species: &Species, seed: u64) -> Skeleton {
+pub fn grow(species: &Species, age_years: f32, seed: u64) -> Skeleton {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let Growth::ReevesBlau(growth) = &species.growth;
-    let reeves::Wood { mut beams, envelope } = reeves::grow(growth, &mut random);
-    let clusters = foliage::place(&species.foliage, &beams, &envelope, &mut random);
-    pipes::assign_radii(&mut beams, &clusters, growth.trunk.radius_m, growth.pipe_exponent);
-    Skeleton { beams, clusters, envelope }
+    let stage = species.age.stage(age_years);
+    let Wood { mut beams, envelope, trunk_radius_m } = species.growth.grow(&stage, &mut random);
+    let mut clusters = foliage::place(&young(&species.foliage, &beams), &beams, &envelope, &mut random);
+    if let Some(exponent) = species.growth.pipe_exponent() {
+        pipes::assign_radii(&mut beams, &clusters, trunk_radius_m, exponent);
+    }
+    species.damage.befall(&mut beams, &mut clusters, &mut random);
+    let grown = species.growth.trunk();
+    let trunk = grown.scaled(stage.height, trunk_radius_m / grown.radius_m);
+    Skeleton { beams, clusters, envelope, trunk }
+}
+
+/// The foliage on a tree that may not have all its orders of branches yet: leaves sit on the last that there is. Sprays
+/// keep their size whatever the age, but are no larger than a seedling.
+fn young(foliage: &Foliage, beams: &[SkeletonBeam]) -> Foliage {
+    let last_order = beams.iter().map(|beam| beam.order).max().unwrap_or(0);
+    let height_m = beams.iter().map(|beam| beam.path(1.0).y).fold(0.0, f32::max);
+    let size_m = foliage.size_m.min(LONGEST_SPRAY_SHARE * height_m);
+    Foliage {
+        first_order: foliage.first_order.min(last_order),
+        size_m,
+        spacing_m: foliage.spacing_m * size_m / foliage.size_m,
+        ..foliage.clone()
+    }
 }

@@ -1,7 +1,8 @@
 //! A species: the numbers from which all individuals of one kind of tree grow.
 //!
 //! A species is written in RON, every field with its unit in its name; what is left out takes the default, which is
-//! a pedunculate oak. [`Species::from_ron`] refuses what does not make a tree and says which field, which value and
+//! a pedunculate oak. Sizes are those of the mature tree: [`Age`] says when that is and how the tree gets there.
+//! [`Species::from_ron`] refuses what does not make a tree and says which field, which value and
 //! what is allowed, so that an editor never crashes on a slip of the keyboard.
 
 use std::{fmt::Display, ops::RangeInclusive};
@@ -14,7 +15,7 @@ use thiserror::Error;
 use super::{
     bark::Bark,
     foliage::Foliage,
-    growth::{Growth, reeves::ReevesBlau},
+    growth::{Growth, age::Age, damage::Damage, reeves::ReevesBlau},
     phenology::Phenology,
 };
 
@@ -30,6 +31,10 @@ pub struct Species {
     pub seed: u64,
     /// How the skeleton grows.
     pub growth: Growth,
+    /// How it ages; the sizes written in `growth` are those at its `mature_years`.
+    pub age: Age,
+    /// What wind and rot have broken.
+    pub damage: Damage,
     /// What its beams are made of.
     pub wood: Wood,
     /// What it carries.
@@ -45,6 +50,8 @@ impl Default for Species {
             variants: 4,
             seed: 0,
             growth: Growth::ReevesBlau(ReevesBlau::default()),
+            age: Age::default(),
+            damage: Damage::default(),
             wood: Wood::default(),
             foliage: Foliage::default(),
             phenology: Phenology::default(),
@@ -111,6 +118,8 @@ impl Species {
             return Err(SpeciesError::out_of_range("variants", self.variants, "1 to 16"));
         }
         self.growth.validate().map_err(|error| error.inside("growth"))?;
+        self.age.validate().map_err(|error| error.inside("age"))?;
+        self.damage.validate().map_err(|error| error.inside("damage"))?;
         self.wood.validate().map_err(|error| error.inside("wood"))?;
         self.foliage.validate().map_err(|error| error.inside("foliage"))?;
         self.phenology.validate().map_err(|error| error.inside("phenology"))
@@ -205,8 +214,9 @@ mod tests {
     #[test]
     fn a_value_in_a_list_is_named_with_its_index() {
         let mut species = Species::default();
-        let Growth::ReevesBlau(growth) = &mut species.growth;
+        let mut growth = ReevesBlau::default();
         growth.orders[1].spacing_m = f32::NAN;
+        species.growth = Growth::ReevesBlau(growth);
         let error = species.validate().unwrap_err().to_string();
         assert!(error.starts_with("`growth.orders[1].spacing_m` is NaN"), "{error}");
     }

@@ -8,9 +8,12 @@ use proptest::prelude::*;
 use super::{
     foliage::{CLUSTERS_LIMIT, Foliage},
     growth::{
-        Growth,
+        Growth, LeafArrangement,
+        aono_kunii::{AonoKunii, Branching, Shoot},
+        damage::Damage,
         envelope::{Envelope, EnvelopeShape},
         reeves::{BEAMS_LIMIT, BranchOrder, ReevesBlau, Trunk},
+        zaharia::{Fir, Oak},
     },
     leaf_mesh::leaves,
     mesh::{WoodVertices, wood},
@@ -30,7 +33,7 @@ fn orders() -> impl Strategy<Value = BranchOrder> {
     let places = (0.0_f32..0.6, 0.6_f32..=1.0, 0.2_f32..3.0, 0.0_f32..=1.0, 1_u32..6);
     let angles = (0.0_f32..150.0, 0.0_f32..150.0, 0.0_f32..60.0, -360.0_f32..360.0, 0.0_f32..180.0);
     let lengths = (0.02_f32..3.0, 0.0_f32..=1.0, 0.0_f32..=1.0, 0.05_f32..=1.0, 0.0_f32..3.0);
-    let habit = (1_u32..=6, 0.0_f32..60.0, -2.0_f32..2.0, -0.3_f32..0.3, 0.0_f32..=1.0);
+    let habit = (1_u32..=6, 0.0_f32..60.0, -4.0_f32..4.0, -0.3_f32..0.3, 0.0_f32..=1.0);
     (places, angles, lengths, habit).prop_map(|(places, angles, lengths, habit)| BranchOrder {
         first_at: places.0,
         last_at: places.1,
@@ -55,36 +58,83 @@ fn orders() -> impl Strategy<Value = BranchOrder> {
     })
 }
 
+const SHAPES: [EnvelopeShape; 5] = [
+    EnvelopeShape::Ellipsoid,
+    EnvelopeShape::Cone,
+    EnvelopeShape::Cylinder,
+    EnvelopeShape::Dome,
+    EnvelopeShape::InvertedCone,
+];
+
+fn structures() -> impl Strategy<Value = AonoKunii> {
+    let shoot = || {
+        (0.0_f32..150.0, 0.1_f32..1.2, 0.1_f32..1.0).prop_map(|(angle_deg, length, diameter)| Shoot {
+            angle_deg,
+            length,
+            diameter,
+        })
+    };
+    let arrangements = prop::sample::select(vec![
+        LeafArrangement::Spiral,
+        LeafArrangement::Alternate,
+        LeafArrangement::Opposite,
+        LeafArrangement::Whorled(5),
+    ]);
+    let monopodial = (shoot(), shoot(), arrangements).prop_map(|(axis, lateral, arrangement)| Branching::Monopodial {
+        axis,
+        lateral,
+        arrangement,
+    });
+    let dichotomous = ([shoot(), shoot()], -360.0_f32..360.0)
+        .prop_map(|(shoots, turn_deg)| Branching::Dichotomous { shoots, turn_deg });
+    let ternary = (shoot(), [-360.0_f32..360.0, -360.0_f32..360.0])
+        .prop_map(|(shoot, turns_deg)| Branching::Ternary { shoot, turns_deg });
+    let branching = prop_oneof![monopodial, dichotomous, ternary];
+    (branching, 1_u32..=12, 0.0_f32..60.0, -1.0_f32..1.0, 0.0_f32..0.9).prop_map(
+        |(branching, generations, deviation_deg, gravity, length_deviation)| AonoKunii {
+            branching,
+            generations,
+            deviation_deg,
+            gravity,
+            length_deviation,
+            ..AonoKunii::default()
+        },
+    )
+}
+
 prop_compose! {
     fn species()(
-        cone in any::<bool>(),
+        shape in prop::sample::select(SHAPES.to_vec()),
         (top_m, low, radius_m) in (0.5_f32..60.0, 0.0_f32..0.9, 0.1_f32..30.0),
         (height, trunk_radius_m, segments) in (0.1_f32..=1.0, 0.01_f32..2.0, 1_u32..=6),
-        (lean_deg, crook_deg, buttresses) in (0.0_f32..30.0, 0.0_f32..45.0, 0_u32..=9),
+        (lean_deg, crook_deg, buttresses, stems) in (0.0_f32..60.0, 0.0_f32..45.0, 0_u32..=9, 1_u32..=5),
+        (dead, broken_trunks, broken_branches, remains) in
+            (any::<bool>(), 0.0_f32..=1.0, 0.0_f32..=1.0, 0.02_f32..=1.0),
         orders in prop::collection::vec(orders(), 0..=3),
         (size_spread, shade_pruning, pipe_exponent) in (0.0_f32..0.8, 0.0_f32..=1.0, 1.5_f32..4.0),
         (first_order, spacing_m, size_m, droop) in (0_u8..=3, 0.05_f32..2.0, 0.05_f32..2.0, -2.0_f32..2.0),
     ) -> Species {
-        let shape = if cone { EnvelopeShape::Cone } else { EnvelopeShape::Ellipsoid };
         let height_m = (height * top_m).max(0.5);
         Species {
             growth: Growth::ReevesBlau(ReevesBlau {
                 envelope: Envelope { shape, base_m: low * top_m, top_m, radius_m },
                 trunk: Trunk {
-                    height_m, radius_m: trunk_radius_m, segments, lean_deg, crook_deg, buttresses, ..Trunk::default()
+                    height_m, radius_m: trunk_radius_m, segments, stems, lean_deg, crook_deg, buttresses,
+                    ..Trunk::default()
                 },
                 orders, size_spread, shade_pruning, pipe_exponent,
             }),
+            damage: Damage { dead, broken_trunks, broken_branches, remains },
             foliage: Foliage { first_order, spacing_m, size_m, droop, ..Foliage::default() },
             ..Species::default()
         }
     }
 }
 
-/// The height that the species promises never to pass.
+/// The height that a species inside an envelope promises never to pass, whatever the age.
 fn stated_height_m(species: &Species) -> f32 {
-    let Growth::ReevesBlau(growth) = &species.growth;
-    growth.envelope.top_m
+    let Growth::ReevesBlau(growth) = &species.growth else { return f32::INFINITY };
+    growth.envelope.top_m * species.age.stage(species.age.oldest_years).height
 }
 
 fn check_skeleton(species: &Species, skeleton: &Skeleton) {
@@ -128,9 +178,13 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
     #[test]
-    fn every_valid_species_grows_a_sound_tree(species in species(), seed in any::<u64>()) {
+    fn every_valid_species_grows_a_sound_tree(
+        species in species(),
+        age_years in 0.0_f32..700.0,
+        seed in any::<u64>(),
+    ) {
         species.validate().unwrap();
-        let skeleton = grow(&species, seed);
+        let skeleton = grow(&species, age_years, seed);
         check_skeleton(&species, &skeleton);
         let (wood, leaves) = (wood(&species, &skeleton), leaves(&species, &skeleton));
         check_vertices(&wood.positions, &wood.normals, &wood.sway, &wood.indices, skeleton.beams.len());
@@ -138,18 +192,125 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn every_structural_tree_is_sound(structure in structures(), age_years in 0.0_f32..300.0, seed in any::<u64>()) {
+        let species = Species { growth: Growth::AonoKunii(structure), ..Species::default() };
+        species.validate().unwrap();
+        check_skeleton(&species, &grow(&species, age_years, seed));
+    }
+}
+
+/// One species of each generator.
+fn of_all_kinds() -> Vec<Species> {
+    let growths = [
+        Growth::ReevesBlau(ReevesBlau::default()),
+        Growth::Oak(Oak::default()),
+        Growth::Fir(Fir::default()),
+        Growth::AonoKunii(AonoKunii::default()),
+    ];
+    growths.map(|growth| Species { growth, ..Species::default() }).into()
+}
+
+#[test]
+fn all_generators_grow_sound_trees_at_all_ages_and_survive_writing_and_reading() {
+    for species in of_all_kinds() {
+        species.validate().unwrap();
+        let written = ron::to_string(&species).unwrap();
+        assert_eq!(ron::from_str::<Species>(&written).unwrap(), species);
+        for age_years in [-5.0, 1.0, 7.0, 60.0, 200.0, 1e6] {
+            let skeleton = grow(&species, age_years, 3);
+            check_skeleton(&species, &skeleton);
+            assert_eq!(skeleton, grow(&species, age_years, 3));
+        }
+    }
+}
+
+/// A sapling is no shrunk old tree: fewer beams and orders, and leaves that are larger beside it.
+#[test]
+fn trees_grow_in_height_girth_and_number_of_branches() {
+    for species in of_all_kinds() {
+        let ages = [5.0, 20.0, 60.0, 120.0].map(|age_years| {
+            let trees = (0..5).map(|seed| grow(&species, age_years, seed));
+            trees.fold([0.0; 4], |sum, tree| {
+                let orders = tree.beams.iter().map(|beam| beam.order).max().unwrap_or(0);
+                let size_m =
+                    tree.clusters.iter().map(|cluster| cluster.size_m).sum::<f32>() / tree.clusters.len() as f32;
+                let leafiness = size_m / tree.height_m();
+                let own = [tree.height_m(), tree.beams[0].base_radius_m, tree.beams.len() as f32, f32::from(orders)];
+                assert!(leafiness < 0.5, "{leafiness}");
+                [0, 1, 2, 3].map(|index| sum[index] + own[index])
+            })
+        });
+        for pair in ages.windows(2) {
+            let grows = pair[0][..3].iter().zip(&pair[1]).all(|(young, old)| young < old) && pair[0][3] <= pair[1][3];
+            assert!(grows, "{:?}: {ages:?}", species.growth);
+        }
+        assert!(ages[0][2] < 0.2 * ages[3][2], "{ages:?}");
+    }
+}
+
+#[test]
+fn a_dead_tree_has_broken_branches_and_no_leaves() {
+    let whole = oak();
+    let damage = Damage { dead: true, broken_branches: 0.7, broken_trunks: 0.0, remains: 0.1 };
+    let dead = Species { damage, ..whole.clone() };
+    let [whole, snag] = [grow(&whole, 120.0, 2), grow(&dead, 120.0, 2)];
+    assert!(snag.clusters.is_empty() && snag.beams.len() < whole.beams.len() / 2);
+    assert_eq!(snag.beams[0], whole.beams[0], "the trunk keeps its wood");
+    let thickest_tip = |tree: &Skeleton| {
+        let next = tree.continuations();
+        let tips = tree.beams.iter().zip(next).filter(|(beam, next)| beam.order > 0 && next.is_none());
+        tips.map(|(beam, _)| beam.tip_radius_m).fold(0.0, f32::max)
+    };
+    assert!(thickest_tip(&snag) > 2.0 * thickest_tip(&whole), "stubs are blunt");
+}
+
+#[test]
+fn a_shrub_has_several_stems_that_lean_apart() {
+    let trunk = Trunk { stems: 9, height_m: 3.0, radius_m: 0.03, lean_deg: 30.0, ..Trunk::default() };
+    let envelope = Envelope { shape: EnvelopeShape::InvertedCone, base_m: 0.0, top_m: 4.0, radius_m: 2.0 };
+    let growth = Growth::ReevesBlau(ReevesBlau { trunk, envelope, ..ReevesBlau::default() });
+    let shrub = Species { growth, ..Species::default() };
+    let skeleton = grow(&shrub, 120.0, 1);
+    let stems: Vec<_> = skeleton.beams.iter().filter(|beam| beam.parent.is_none()).collect();
+    assert_eq!(stems.len(), 9);
+    assert!(stems.iter().all(|stem| stem.base.dot(stem.direction) >= 0.0 && stem.base.y == 0.0));
+    let wood = wood(&shrub, &skeleton);
+    for point in wood.positions.iter().zip(&wood.sway).filter(|(at, sway)| sway[1] == 0.0 && at[1] < 0.0) {
+        let stem = &skeleton.beams[point.1[0] as usize];
+        assert!((Vec3::from(*point.0) - stem.base).length() < 1.0, "each stem stands on its own foot");
+    }
+}
+
+/// Pendulous twigs hang: their last beams point at the ground.
+#[test]
+fn a_weeping_tree_hangs_its_twigs() {
+    let mut growth = ReevesBlau::default();
+    growth.orders[1] = BranchOrder { segments: 4, rise: -3.0, length: 0.8, light_seeking: 0.0, ..growth.orders[1] };
+    let willow = Species { growth: Growth::ReevesBlau(growth), ..Species::default() };
+    let skeleton = grow(&willow, 120.0, 4);
+    let next = skeleton.continuations();
+    let tips = skeleton.beams.iter().zip(&next).filter(|(beam, next)| beam.order == 2 && next.is_none());
+    let falls: Vec<f32> = tips.map(|(beam, _)| beam.direction.y).collect();
+    let mean = falls.iter().sum::<f32>() / falls.len() as f32;
+    assert!(falls.len() > 50 && mean < -0.7, "{mean} of {}", falls.len());
+}
+
 #[test]
 fn the_same_seed_grows_the_same_tree_and_another_seed_another() {
     let oak = oak();
-    assert_eq!(grow(&oak, 7), grow(&oak, 7));
-    assert_ne!(grow(&oak, 7), grow(&oak, 8));
+    assert_eq!(grow(&oak, 80.0, 7), grow(&oak, 80.0, 7));
+    assert_ne!(grow(&oak, 80.0, 7), grow(&oak, 80.0, 8));
 }
 
 #[test]
 fn the_shipped_trees_have_the_sizes_of_real_ones_and_keep_their_budget() {
     for (species, heights, widths) in [(oak(), 12.5..18.0, 10.0..19.0), (fir(), 17.0..23.0, 4.5..8.0)] {
         for seed in 0..6 {
-            let skeleton = grow(&species, seed);
+            let skeleton = grow(&species, species.age.mature_years, seed);
             let (wood, leaves) = (wood(&species, &skeleton), leaves(&species, &skeleton));
             let vertices = wood.positions.len() + leaves.positions.len();
             let reach = |x: &[f32; 3]| 2.0 * x[0].hypot(x[2]);
@@ -186,7 +347,7 @@ fn open_edges(wood: &WoodVertices) -> Vec<[usize; 2]> {
 #[test]
 fn bark_is_open_only_inside_the_parent_and_below_the_ground() {
     for species in [oak(), fir()] {
-        let skeleton = grow(&species, 3);
+        let skeleton = grow(&species, species.age.mature_years, 3);
         let wood = wood(&species, &skeleton);
         let edges = open_edges(&wood);
         assert!(edges.len() >= 3 * skeleton.beams.iter().filter(|beam| beam.attach < 1.0).count() / 2);
@@ -209,7 +370,7 @@ fn bark_is_open_only_inside_the_parent_and_below_the_ground() {
 #[test]
 fn a_leaf_card_hangs_at_its_anchor_along_its_axis() {
     let species = fir();
-    let skeleton = grow(&species, 5);
+    let skeleton = grow(&species, species.age.mature_years, 5);
     let leaves = leaves(&species, &skeleton);
     for (card, cluster) in skeleton.clusters.iter().enumerate() {
         let [root, tip] = [4 * card, 4 * card + 2].map(|index| Vec3::from(leaves.positions[index]));

@@ -1,9 +1,22 @@
 //! The envelope of a crown: a solid of revolution about the trunk that branches do not leave.
 //!
-//! Reeves & Blau (1985, section 3.1) bound their trees by an ellipsoid or a cone. With `r` the radius and `h` half the
-//! height about the centre `c`, a point `p` is in the ellipsoid where `|(p - c) / (r, h, r)| <= 1`; it is in the cone
-//! with apex `a` and slope `k = r / (top - base)` where `x^2 + z^2 <= k^2 (a_y - y)^2` between base and apex.
-//! The same distance from the surface shades the crown (their section 4): see [`Envelope::depth`].
+//! Reeves & Blau (1985, section 3.1) bound their trees by an ellipsoid or a cone; a column, a dome and a vase are added
+//! for the habits of poplars, pines and shrubs. All are one quadric between two heights: with a point's coordinates
+//! `x, z` in units of the radius and `y` in units of the height from the place given in the table,
+//!
+//! ```text
+//! x^2 + z^2 + k y^2 <= m,   base <= height <= top
+//!
+//! shape           k   m   y = 0       unit of y
+//! ellipsoid       1   1   the middle  half the height
+//! dome            1   1   the base    the height
+//! cylinder        0   1   the middle  half the height
+//! cone           -1   0   the top     the height
+//! inverted cone  -1   0   the base    the height
+//! ```
+//!
+//! Every one is convex, so that a ray leaves it once. The same distance from the surface shades the crown (their
+//! section 4): see [`Envelope::depth`].
 
 use bevy::{math::Vec3, reflect::Reflect};
 use serde::{Deserialize, Serialize};
@@ -32,6 +45,12 @@ pub enum EnvelopeShape {
     Ellipsoid,
     /// A conifer's, its apex on top.
     Cone,
+    /// A column: a lombardy poplar's.
+    Cylinder,
+    /// The upper half of an ellipsoid, flat below: the umbrella of an old pine.
+    Dome,
+    /// A cone on its apex: the vase of an elm or of a shrub's stems.
+    InvertedCone,
 }
 
 impl Default for Envelope {
@@ -48,73 +67,79 @@ impl Envelope {
         require("base_m", self.base_m, 0.0..=0.95 * self.top_m)
     }
 
-    /// The same envelope `scale` times as large.
+    /// The same envelope, `height` times as high and `width` times as wide.
     #[must_use]
-    pub fn scaled(self, scale: f32) -> Self {
+    pub fn scaled(self, height: f32, width: f32) -> Self {
         Self {
             shape: self.shape,
-            base_m: self.base_m * scale,
-            top_m: self.top_m * scale,
-            radius_m: self.radius_m * scale,
+            base_m: self.base_m * height,
+            top_m: self.top_m * height,
+            radius_m: self.radius_m * width,
         }
+    }
+
+    /// The envelope of this shape around points that have grown without one.
+    #[must_use]
+    pub fn around(shape: EnvelopeShape, points: impl IntoIterator<Item = Vec3>) -> Self {
+        let least = Self { shape, base_m: f32::MAX, top_m: 0.02, radius_m: 0.01 };
+        let envelope = points.into_iter().fold(least, |envelope, point| Self {
+            shape,
+            base_m: envelope.base_m.min(point.y),
+            top_m: envelope.top_m.max(point.y),
+            radius_m: envelope.radius_m.max(point.x.hypot(point.z)),
+        });
+        Self { base_m: envelope.base_m.clamp(0.0, 0.95 * envelope.top_m), ..envelope }
     }
 
     /// Distance along the unit vector `direction` from `from` to where the ray leaves the envelope for good, m;
     /// 0 where it never is inside.
     #[must_use]
     pub fn exit_distance_m(&self, from: Vec3, direction: Vec3) -> f32 {
-        match self.shape {
-            EnvelopeShape::Ellipsoid => self.ellipsoid_exit_m(from, direction),
-            EnvelopeShape::Cone => self.cone_exit_m(from, direction),
-        }
+        let quadric = self.quadric();
+        let (p, d) = (quadric.local(from), direction / quadric.unit);
+        // x^2 + z^2 + k y^2 - m along the ray: a t^2 + 2 b t + c.
+        let a = d.x * d.x + d.z * d.z + quadric.k * d.y * d.y;
+        let b = p.x * d.x + p.z * d.z + quadric.k * p.y * d.y;
+        let c = p.x * p.x + p.z * p.z + quadric.k * p.y * p.y - quadric.m;
+        let between = slab(from.y, direction.y, self.base_m, self.top_m);
+        let pieces = below_zero(a, b, c).map(|piece| meet(piece, between));
+        // Of the two nappes of a cone one lies between the heights, and the other touches it in the apex at most.
+        let longest = if length(pieces[1]) > length(pieces[0]) { pieces[1] } else { pieces[0] };
+        if length(longest) < 0.0 { 0.0 } else { longest.1.max(0.0) }
     }
 
-    fn ellipsoid_exit_m(&self, from: Vec3, direction: Vec3) -> f32 {
-        let p = (from - self.centre()) / self.semi_axes();
-        let d = direction / self.semi_axes();
-        let (a, b, c) = (d.length_squared(), p.dot(d), p.length_squared() - 1.0);
-        let discriminant = b * b - a * c;
-        if discriminant < 0.0 { 0.0 } else { ((discriminant.sqrt() - b) / a).max(0.0) }
-    }
-
-    fn cone_exit_m(&self, from: Vec3, direction: Vec3) -> f32 {
-        let slope2 = self.slope() * self.slope();
-        let below_apex = self.top_m - from.y;
-        let a = direction.x * direction.x + direction.z * direction.z - slope2 * direction.y * direction.y;
-        let b = from.x * direction.x + from.z * direction.z + slope2 * below_apex * direction.y;
-        let c = from.x * from.x + from.z * from.z - slope2 * below_apex * below_apex;
-        if below_apex < 0.0 || c > 0.0 {
-            return 0.0;
-        }
-        let side = smallest_positive_root(a, b, c);
-        let floor = if direction.y < 0.0 { ((self.base_m - from.y) / direction.y).max(0.0) } else { f32::INFINITY };
-        let exit = side.min(floor).min(2.0 * self.top_m);
-        if from.y + exit * direction.y < self.base_m - 1e-3 { 0.0 } else { exit }
-    }
-
-    /// How deep a point is in the crown: 0 at the surface and outside, 1 at the middle (of an ellipsoid) or on the
-    /// axis (of a cone).
+    /// How deep a point is in the crown: 0 at the surface and outside, 1 in the middle or on the axis. Below a cone it is 1.
     #[must_use]
     pub fn depth(&self, point: Vec3) -> f32 {
+        let quadric = self.quadric();
+        let local = quadric.local(point);
+        let across = local.x.hypot(local.z);
         let outwards = match self.shape {
-            EnvelopeShape::Ellipsoid => ((point - self.centre()) / self.semi_axes()).length(),
-            EnvelopeShape::Cone => {
-                let radius = (self.slope() * (self.top_m - point.y)).max(1e-3);
-                if point.y < self.base_m { 1.0 } else { point.x.hypot(point.z) / radius }
-            }
+            EnvelopeShape::Ellipsoid => local.length(),
+            EnvelopeShape::Dome if local.y >= 0.0 => local.length(),
+            EnvelopeShape::Cone if point.y < self.base_m => 0.0,
+            EnvelopeShape::Cone => across / (-local.y).max(1e-4),
+            EnvelopeShape::Cylinder => across.max(local.y.abs()),
+            // The light falls in from above.
+            EnvelopeShape::InvertedCone if local.y > 0.0 => (across / local.y.max(1e-4)).max(local.y),
+            EnvelopeShape::Dome | EnvelopeShape::InvertedCone => 1.0,
         };
         (1.0 - outwards).clamp(0.0, 1.0)
     }
 
-    /// Unit vector out of the crown, towards the light.
+    /// Unit vector out of the crown, towards the light: the normal of the level surface through the point; in an inverted
+    /// cone, whose side faces the ground, the way from its apex.
     #[must_use]
     pub fn outward(&self, point: Vec3) -> Vec3 {
+        let quadric = self.quadric();
+        let local = quadric.local(point);
         let gradient = match self.shape {
-            EnvelopeShape::Ellipsoid => (point - self.centre()) / (self.semi_axes() * self.semi_axes()),
+            EnvelopeShape::Ellipsoid | EnvelopeShape::Dome => local / quadric.unit,
+            EnvelopeShape::Cylinder => Vec3::new(local.x, 0.0, local.z),
             EnvelopeShape::Cone => {
-                let radial = Vec3::new(point.x, 0.0, point.z).normalize_or_zero();
-                radial + Vec3::Y * self.slope()
+                Vec3::new(point.x, 0.0, point.z).normalize_or_zero() + Vec3::Y * (self.radius_m / quadric.unit.y)
             }
+            EnvelopeShape::InvertedCone => Vec3::new(point.x, (point.y - self.base_m).max(0.0), point.z),
         };
         gradient.try_normalize().unwrap_or(Vec3::Y)
     }
@@ -122,14 +147,12 @@ impl Envelope {
     /// Horizontal radius at a height, m: 0 above the top and below the base.
     #[must_use]
     pub fn girth_m(&self, height_m: f32) -> f32 {
-        match self.shape {
-            EnvelopeShape::Ellipsoid => {
-                let share = (height_m - self.centre().y) / self.semi_axes().y;
-                self.radius_m * (1.0 - share * share).max(0.0).sqrt()
-            }
-            EnvelopeShape::Cone if height_m < self.base_m => 0.0,
-            EnvelopeShape::Cone => (self.slope() * (self.top_m - height_m)).max(0.0),
+        if !(self.base_m..=self.top_m).contains(&height_m) {
+            return 0.0;
         }
+        let quadric = self.quadric();
+        let y = (height_m - quadric.origin_m) / quadric.unit.y;
+        self.radius_m * (quadric.m - quadric.k * y * y).max(0.0).sqrt()
     }
 
     /// Middle of the crown, m.
@@ -138,27 +161,76 @@ impl Envelope {
         Vec3::Y * (0.5 * (self.base_m + self.top_m))
     }
 
-    fn semi_axes(&self) -> Vec3 {
-        Vec3::new(self.radius_m, 0.5 * (self.top_m - self.base_m), self.radius_m)
-    }
-
-    fn slope(&self) -> f32 {
-        self.radius_m / (self.top_m - self.base_m)
+    fn quadric(&self) -> Quadric {
+        let height_m = self.top_m - self.base_m;
+        let middle_m = 0.5 * (self.base_m + self.top_m);
+        let (k, m, origin_m, unit_m) = match self.shape {
+            EnvelopeShape::Ellipsoid => (1.0, 1.0, middle_m, 0.5 * height_m),
+            EnvelopeShape::Dome => (1.0, 1.0, self.base_m, height_m),
+            EnvelopeShape::Cylinder => (0.0, 1.0, middle_m, 0.5 * height_m),
+            EnvelopeShape::Cone => (-1.0, 0.0, self.top_m, height_m),
+            EnvelopeShape::InvertedCone => (-1.0, 0.0, self.base_m, height_m),
+        };
+        Quadric { k, m, origin_m, unit: Vec3::new(self.radius_m, unit_m, self.radius_m) }
     }
 }
 
-/// Smallest positive `t` with `a t^2 + 2 b t + c = 0`, infinity where there is none.
-fn smallest_positive_root(a: f32, b: f32, c: f32) -> f32 {
-    let positive = |t: f32| if t > 0.0 { t } else { f32::INFINITY };
-    if a.abs() < 1e-6 {
-        return if b.abs() < 1e-9 { f32::INFINITY } else { positive(-c / (2.0 * b)) };
+/// A row of the table at the top of this file.
+struct Quadric {
+    k: f32,
+    m: f32,
+    origin_m: f32,
+    unit: Vec3,
+}
+
+impl Quadric {
+    fn local(&self, point: Vec3) -> Vec3 {
+        (point - Vec3::Y * self.origin_m) / self.unit
     }
+}
+
+/// A stretch of a ray, from and to; empty where the second is the smaller.
+type Stretch = (f32, f32);
+
+const NOWHERE: Stretch = (f32::INFINITY, f32::NEG_INFINITY);
+const EVERYWHERE: Stretch = (f32::NEG_INFINITY, f32::INFINITY);
+
+fn meet(one: Stretch, other: Stretch) -> Stretch {
+    (one.0.max(other.0), one.1.min(other.1))
+}
+
+fn length(stretch: Stretch) -> f32 {
+    stretch.1 - stretch.0
+}
+
+/// Where a ray is between two heights.
+fn slab(from_m: f32, climb: f32, base_m: f32, top_m: f32) -> Stretch {
+    if climb.abs() < 1e-6 {
+        return if (base_m..=top_m).contains(&from_m) { EVERYWHERE } else { NOWHERE };
+    }
+    let (base, top) = ((base_m - from_m) / climb, (top_m - from_m) / climb);
+    (base.min(top), base.max(top))
+}
+
+/// Where `a t^2 + 2 b t + c <= 0`: at most two stretches.
+fn below_zero(a: f32, b: f32, c: f32) -> [Stretch; 2] {
     let discriminant = b * b - a * c;
-    if discriminant < 0.0 {
-        return f32::INFINITY;
+    if a.abs() < 1e-7 {
+        let stretch = match b {
+            b if b.abs() < 1e-9 => return if c <= 0.0 { [EVERYWHERE, NOWHERE] } else { [NOWHERE; 2] },
+            b if b > 0.0 => (f32::NEG_INFINITY, -c / (2.0 * b)),
+            b => (-c / (2.0 * b), f32::INFINITY),
+        };
+        return [stretch, NOWHERE];
     }
-    let root = discriminant.sqrt();
-    positive((-b - root) / a).min(positive((-b + root) / a))
+    if discriminant < 0.0 {
+        return if a > 0.0 { [NOWHERE; 2] } else { [EVERYWHERE, NOWHERE] };
+    }
+    // Both roots without cancellation: their product is c/a.
+    let sum = -(b + discriminant.sqrt().copysign(b));
+    let (one, other) = (sum / a, if sum == 0.0 { 0.0 } else { c / sum });
+    let (near, far) = (one.min(other), one.max(other));
+    if a > 0.0 { [(near, far), NOWHERE] } else { [(f32::NEG_INFINITY, near), (far, f32::INFINITY)] }
 }
 
 #[cfg(test)]
@@ -167,36 +239,56 @@ mod tests {
 
     use super::*;
 
+    /// The shapes' outlines as schoolbooks write them, apart from the table of quadrics.
+    fn written_girth_m(envelope: &Envelope, height_m: f32) -> f32 {
+        let up = (height_m - envelope.base_m) / (envelope.top_m - envelope.base_m);
+        envelope.radius_m
+            * match envelope.shape {
+                EnvelopeShape::Ellipsoid => (1.0 - (2.0 * up - 1.0).powi(2)).max(0.0).sqrt(),
+                EnvelopeShape::Dome => (1.0 - up * up).max(0.0).sqrt(),
+                EnvelopeShape::Cylinder => 1.0,
+                EnvelopeShape::Cone => 1.0 - up,
+                EnvelopeShape::InvertedCone => up,
+            }
+    }
+
     /// Slow oracle: walks along the ray and remembers the last place inside.
     fn marched_exit_m(envelope: &Envelope, from: Vec3, direction: Vec3, step_m: f32) -> f32 {
-        let inside = |point: Vec3| match envelope.shape {
-            EnvelopeShape::Ellipsoid => ((point - envelope.centre()) / envelope.semi_axes()).length() <= 1.0,
-            EnvelopeShape::Cone => {
-                (envelope.base_m..=envelope.top_m).contains(&point.y)
-                    && point.x.hypot(point.z) <= envelope.girth_m(point.y)
-            }
+        let inside = |point: Vec3| {
+            (envelope.base_m..=envelope.top_m).contains(&point.y)
+                && point.x.hypot(point.z) <= written_girth_m(envelope, point.y)
         };
         let farthest = (4.0 * envelope.top_m.max(envelope.radius_m) / step_m) as usize;
         let last = (0..farthest).rev().find(|&step| inside(from + direction * (step as f32 * step_m)));
         last.map_or(0.0, |step| step as f32 * step_m)
     }
 
+    const SHAPES: [EnvelopeShape; 5] = [
+        EnvelopeShape::Ellipsoid,
+        EnvelopeShape::Cone,
+        EnvelopeShape::Cylinder,
+        EnvelopeShape::Dome,
+        EnvelopeShape::InvertedCone,
+    ];
+
     fn shapes() -> impl Strategy<Value = EnvelopeShape> {
-        prop_oneof![Just(EnvelopeShape::Ellipsoid), Just(EnvelopeShape::Cone)]
+        prop::sample::select(SHAPES.to_vec())
     }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(200))]
 
         #[test]
-        fn rays_from_the_trunk_leave_where_a_walker_leaves(
+        fn rays_leave_where_a_walker_leaves(
             shape in shapes(),
             height in 0.0_f32..0.95,
             azimuth in 0.0_f32..std::f32::consts::TAU,
-            elevation in -1.2_f32..1.2,
+            elevation in -1.5_f32..1.5,
+            aside in (-0.6_f32..0.6, -0.6_f32..0.6),
         ) {
             let envelope = Envelope { shape, base_m: 2.0, top_m: 14.0, radius_m: 5.0 };
-            let from = Vec3::Y * (height * envelope.top_m);
+            let off = Vec3::new(aside.0, 0.0, aside.1);
+            let from = Vec3::Y * (height * envelope.top_m) + off * written_girth_m(&envelope, height * envelope.top_m);
             let (sin, cos) = elevation.sin_cos();
             let direction = Vec3::new(cos * azimuth.cos(), sin, cos * azimuth.sin());
             let step_m = 0.01;
@@ -221,11 +313,35 @@ mod tests {
 
     #[test]
     fn the_way_out_is_a_unit_vector_even_at_the_middle() {
-        for shape in [EnvelopeShape::Ellipsoid, EnvelopeShape::Cone] {
+        for shape in SHAPES {
             let envelope = Envelope { shape, ..Envelope::default() };
             for point in [envelope.centre(), Vec3::ZERO, Vec3::new(3.0, 7.0, -2.0)] {
                 assert!((envelope.outward(point).length() - 1.0).abs() < 1e-5);
             }
         }
+    }
+
+    #[test]
+    fn the_surface_lies_at_no_depth_and_at_the_girth() {
+        for shape in SHAPES {
+            let envelope = Envelope { shape, ..Envelope::default() };
+            for share in [0.03, 0.3, 0.5, 0.8, 0.97] {
+                let height_m = envelope.base_m + share * (envelope.top_m - envelope.base_m);
+                let girth_m = envelope.girth_m(height_m);
+                assert!((girth_m - written_girth_m(&envelope, height_m)).abs() < 1e-3, "{shape:?}");
+                let rim = Vec3::new(0.6 * girth_m, height_m, -0.8 * girth_m);
+                assert!(envelope.depth(rim) < 1e-3, "{shape:?} {share}: {}", envelope.depth(rim));
+                assert!(envelope.depth(rim * Vec3::new(0.5, 1.0, 0.5)) > 0.0);
+            }
+            assert_eq!([envelope.girth_m(0.0), envelope.girth_m(envelope.top_m + 0.1)], [0.0; 2]);
+        }
+    }
+
+    #[test]
+    fn an_envelope_around_points_holds_them() {
+        let points = [Vec3::new(1.0, 2.0, 0.0), Vec3::new(0.0, 9.0, 0.5), Vec3::new(-3.0, 4.0, 4.0)];
+        let around = Envelope::around(EnvelopeShape::Cylinder, points);
+        assert_eq!((around.base_m, around.top_m, around.radius_m), (2.0, 9.0, 5.0));
+        assert!(Envelope::around(EnvelopeShape::Cone, []).validate().is_err(), "nothing has grown");
     }
 }

@@ -1,24 +1,75 @@
-//! Growing skeletons: the envelope that bounds a crown, the generators, the pipes that give wood its thickness.
+//! Growing skeletons: age, the envelope that bounds a crown, the generators, what breaks, and the pipes that give wood
+//! its thickness.
 
 use bevy::reflect::Reflect;
+use rand::Rng;
 use serde::{Deserialize, Serialize};
 
+use self::{age::Stage, grower::Wood, reeves::Trunk};
 use super::species::SpeciesError;
 
+pub mod age;
+pub mod aono_kunii;
+pub mod arrangement;
+pub mod damage;
 pub mod envelope;
+pub(super) mod grower;
 pub(super) mod pipes;
 pub mod reeves;
+pub mod zaharia;
+
+pub use arrangement::LeafArrangement;
 
 /// How a skeleton grows.
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 pub enum Growth {
     /// Stochastic branching inside an envelope.
     ReevesBlau(reeves::ReevesBlau),
+    /// Zaharia's oak: branches placed at random, shorter towards their parents' tips.
+    Oak(zaharia::Oak),
+    /// Zaharia's fir: branches in floors.
+    Fir(zaharia::Fir),
+    /// Aono & Kunii's structural tree: the same branching again and again.
+    AonoKunii(aono_kunii::AonoKunii),
 }
 
 impl Growth {
     pub(super) fn validate(&self) -> Result<(), SpeciesError> {
-        let Self::ReevesBlau(growth) = self;
-        growth.validate()
+        match self {
+            Self::ReevesBlau(growth) => growth.validate(),
+            Self::Oak(growth) => growth.validate(),
+            Self::Fir(growth) => growth.validate(),
+            Self::AonoKunii(growth) => growth.validate(),
+        }
+    }
+
+    /// The trunk of the mature tree.
+    #[must_use]
+    pub fn trunk(&self) -> &Trunk {
+        match self {
+            Self::ReevesBlau(growth) => &growth.trunk,
+            Self::Oak(growth) => &growth.trunk,
+            Self::Fir(growth) => &growth.trunk,
+            Self::AonoKunii(growth) => &growth.trunk,
+        }
+    }
+
+    /// Exponent of the pipe model that gives the beams their radii; none where growth gives them itself.
+    pub(super) fn pipe_exponent(&self) -> Option<f32> {
+        match self {
+            Self::ReevesBlau(growth) => Some(growth.pipe_exponent),
+            Self::Oak(growth) => Some(growth.pipe_exponent),
+            Self::Fir(growth) => Some(growth.pipe_exponent),
+            Self::AonoKunii(_) => None,
+        }
+    }
+
+    pub(super) fn grow(&self, stage: &Stage, random: &mut impl Rng) -> Wood {
+        match self {
+            Self::ReevesBlau(growth) => reeves::grow(growth, stage, random),
+            Self::Oak(growth) => growth.grow(stage, random),
+            Self::Fir(growth) => growth.grow(stage, random),
+            Self::AonoKunii(growth) => growth.grow(stage, random),
+        }
     }
 }

@@ -17,7 +17,9 @@ pub(in crate::tree) fn assign_radii(
     exponent: f32,
 ) {
     let (at_base, at_tip) = count_pipes(beams, clusters);
-    let total = at_base.first().copied().unwrap_or(1.0);
+    // Of several stems the thickest is the one that bears most.
+    let stems = beams.iter().zip(&at_base).filter(|(beam, _)| beam.parent.is_none());
+    let total = stems.map(|(_, &pipes)| pipes).fold(1.0, f32::max);
     let radius = |pipes: f32| trunk_radius_m * (pipes / total).powf(1.0 / exponent);
     for index in 0..beams.len() {
         let beam = beams[index];

@@ -1,0 +1,179 @@
+//! Zaharia's fir: branches in floors along the trunk, needles on the last levels.
+
+use bevy::reflect::Reflect;
+use rand::Rng;
+use serde::{Deserialize, Serialize};
+
+use super::{Growing, Lifetime, Plan, no_branch};
+use crate::tree::{
+    growth::{age::Stage, envelope::EnvelopeShape, grower::Wood, reeves::Trunk},
+    species::{SpeciesError, require},
+};
+
+/// Parameters of Zaharia's fir. That branches shorten towards the top, into a cone, comes from his `l_branch` itself.
+#[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Fir {
+    /// The trunk at `max_age_years`; its `height_m` is his `length`.
+    pub trunk: Trunk,
+    /// His `delta`: how far the trunk's length may be off, m: 0 to the trunk's height.
+    pub delta_m: f32,
+    /// Floors at `min_age_years`, 0 to 80.
+    pub min_floors: f32,
+    /// Floors at `max_age_years`, `min_floors` to 80.
+    pub max_floors: f32,
+    /// His branching factor: branches of a floor, 1 to 12.
+    pub branching_factor: u32,
+    /// Age at which growth begins, years: 0 to 1000.
+    pub min_age_years: f32,
+    /// Age at which it ends, years: at least a year more, up to 5000.
+    pub max_age_years: f32,
+    /// His `adjust_branch` of the floors, and of the side branches left and right of them, -1 to 2.
+    pub adjust_branch: [f32; 2],
+    /// Pairs of side branches on a floor's branch at `max_age_years`, 0 to 20.
+    pub side_pairs: f32,
+    /// Lowest floor, as a share of the trunk, 0 to 0.95.
+    pub first_at: f32,
+    /// Least value of his `random()`, 0 to 1.
+    pub shortest: f32,
+    /// Angle of the lowest floor's branches from the trunk, degrees: 0 to 150.
+    pub first_angle_deg: f32,
+    /// The same of the highest, degrees: 0 to 150.
+    pub last_angle_deg: f32,
+    /// Angle of a side branch from its floor's branch, degrees: 0 to 150.
+    pub side_angle_deg: f32,
+    /// Sag of the branches' middles as a share of their length, -0.3 to 0.3.
+    pub sag: f32,
+    /// Exponent of the pipe model, 1.5 to 4.
+    pub pipe_exponent: f32,
+}
+
+impl Default for Fir {
+    /// A silver fir that is 28 m high at 150 years, with his branching factor of 8.
+    fn default() -> Self {
+        Self {
+            trunk: Trunk {
+                height_m: 28.0,
+                radius_m: 0.32,
+                segments: 3,
+                lean_deg: 1.0,
+                crook_deg: 1.0,
+                ..Trunk::default()
+            },
+            delta_m: 2.0,
+            min_floors: 2.0,
+            max_floors: 34.0,
+            branching_factor: 8,
+            min_age_years: 1.0,
+            max_age_years: 150.0,
+            adjust_branch: [-0.81, -0.55],
+            side_pairs: 4.0,
+            first_at: 0.06,
+            shortest: 0.65,
+            first_angle_deg: 105.0,
+            last_angle_deg: 50.0,
+            side_angle_deg: 52.0,
+            sag: 0.07,
+            pipe_exponent: 2.0,
+        }
+    }
+}
+
+impl Fir {
+    pub(in crate::tree::growth) fn validate(&self) -> Result<(), SpeciesError> {
+        let ages_years = [self.min_age_years, self.max_age_years];
+        super::validate(&self.trunk, self.delta_m, self.shortest, ages_years, self.pipe_exponent)?;
+        require("min_floors", self.min_floors, 0.0..=80.0)?;
+        require("max_floors", self.max_floors, self.min_floors..=80.0)?;
+        require("branching_factor", self.branching_factor as f32, 1.0..=12.0)?;
+        require("adjust_branch[0]", self.adjust_branch[0], -1.0..=2.0)?;
+        require("adjust_branch[1]", self.adjust_branch[1], -1.0..=2.0)?;
+        require("side_pairs", self.side_pairs, 0.0..=20.0)?;
+        require("first_at", self.first_at, 0.0..=0.95)?;
+        require("first_angle_deg", self.first_angle_deg, 0.0..=150.0)?;
+        require("last_angle_deg", self.last_angle_deg, 0.0..=150.0)?;
+        require("side_angle_deg", self.side_angle_deg, 0.0..=150.0)?;
+        require("sag", self.sag, -0.3..=0.3)
+    }
+
+    pub(in crate::tree::growth) fn grow(&self, stage: &Stage, random: &mut impl Rng) -> Wood {
+        let lifetime = Lifetime::at(stage.years, self.min_age_years, self.max_age_years);
+        // A fir keeps its slender crown while it grows: the age in `l_branch` would make an old one as wide as high.
+        let keeps = 1.0 - lifetime.over_max;
+        let floors = Growing {
+            adjust_branch: self.adjust_branch[0] + keeps,
+            nodes: no_branch(self.min_floors, self.max_floors, lifetime.share),
+            per_node: self.branching_factor,
+            floors: true,
+            first_at: self.first_at,
+            first_angle_deg: self.first_angle_deg,
+            last_angle_deg: self.last_angle_deg,
+            angle_spread_deg: 6.0,
+            flat: false,
+            sag: self.sag,
+            crook_deg: 8.0,
+        };
+        let sides = Growing {
+            adjust_branch: self.adjust_branch[1] + keeps,
+            nodes: no_branch(0.0, self.side_pairs, lifetime.share),
+            per_node: 2,
+            first_at: 0.2,
+            first_angle_deg: self.side_angle_deg,
+            last_angle_deg: self.side_angle_deg,
+            flat: true,
+            ..floors
+        };
+        let plan = Plan {
+            trunk: &self.trunk,
+            delta_m: self.delta_m,
+            shortest: self.shortest,
+            lifetime,
+            shape: EnvelopeShape::Cone,
+            levels: vec![floors, sides],
+        };
+        plan.grow(random)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
+
+    use super::*;
+
+    fn grown(age_years: f32) -> Wood {
+        Fir::default().grow(&Stage::mature(age_years), &mut Xoshiro256PlusPlus::seed_from_u64(4))
+    }
+
+    /// The branches of a floor hold on at one height, all around the trunk.
+    #[test]
+    fn branches_stand_in_floors() {
+        let wood = grown(120.0);
+        let floors: Vec<f32> = wood.beams.iter().filter(|beam| beam.order == 1).map(|beam| beam.base.y).collect();
+        let mut heights = floors.clone();
+        heights.dedup_by(|one, other| (*one - *other).abs() < 1e-3);
+        assert!(floors.len() > 150 && floors.len() <= heights.len() * 8, "{} in {}", floors.len(), heights.len());
+        assert!(floors.len() >= heights.len() * 7, "{} in {} floors", floors.len(), heights.len());
+    }
+
+    #[test]
+    fn the_crown_narrows_towards_the_top() {
+        let wood = grown(120.0);
+        let top_m = wood.envelope.top_m;
+        let reach_m = |from: f32, to: f32| {
+            let between = |beam: &&crate::tree::skeleton::SkeletonBeam| {
+                beam.order == 1 && (from..to).contains(&(beam.base.y / top_m))
+            };
+            let reaches = wood.beams.iter().filter(between).map(|beam| beam.path(1.0).with_y(0.0).length());
+            reaches.fold(0.0, f32::max)
+        };
+        let reaches_m = [reach_m(0.0, 0.3), reach_m(0.3, 0.6), reach_m(0.6, 0.9)];
+        assert!(reaches_m[0] > 1.3 * reaches_m[1] && reaches_m[1] > 1.3 * reaches_m[2], "{reaches_m:?}");
+    }
+
+    #[test]
+    fn an_older_fir_has_more_floors_and_more_branches() {
+        let beams = [5.0, 20.0, 60.0, 150.0].map(|age| grown(age).beams.len());
+        assert!(beams.windows(2).all(|pair| pair[0] < pair[1]), "{beams:?}");
+    }
+}
