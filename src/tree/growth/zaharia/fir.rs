@@ -167,8 +167,9 @@ mod tests {
             let reaches = wood.beams.iter().filter(between).map(|beam| beam.path(1.0).with_y(0.0).length());
             reaches.fold(0.0, f32::max)
         };
+        // `length_father - dist` at the bands' lower ends is as 0.94 : 0.7 : 0.4; chance and the angles are on top.
         let reaches_m = [reach_m(0.0, 0.3), reach_m(0.3, 0.6), reach_m(0.6, 0.9)];
-        assert!(reaches_m[0] > 1.3 * reaches_m[1] && reaches_m[1] > 1.3 * reaches_m[2], "{reaches_m:?}");
+        assert!(reaches_m[0] > 1.15 * reaches_m[1] && reaches_m[1] > 1.4 * reaches_m[2], "{reaches_m:?}");
     }
 
     #[test]
