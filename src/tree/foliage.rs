@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     growth::{envelope::Envelope, reeves::leave},
-    leaf_texture::Leaf,
+    leaf::Leaf,
     skeleton::{LeafCluster, SkeletonBeam, continuations},
     species::{SpeciesError, require},
 };
