@@ -2,5 +2,5 @@
 
 pub mod canvas;
 
-pub use canvas::{MASK_CUT_OFF, TextureData};
 pub(crate) use canvas::{Canvas, linear, mix};
+pub use canvas::{MASK_CUT_OFF, TextureData};

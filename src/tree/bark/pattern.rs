@@ -106,7 +106,7 @@ impl<'a> Pattern<'a> {
         Point {
             height,
             face: face * (0.8 + 0.2 * lip),
-            accent: smoothstep(0.35, 0.85, level) * face,
+            accent: 0.8 * smoothstep(0.2, 0.9, level + 0.25 * fine + 0.15 * grain) * face,
             lichen: 0.0,
             tone: 0.8 + 0.25 * unit(cell.hash >> 8) + 0.2 * (level - 0.5) + 0.25 * grain * bark.roughness,
         }
@@ -143,11 +143,12 @@ impl<'a> Pattern<'a> {
         let dash = smoothstep(1.1, 0.7, long + 0.2 * grain) * f32::from(u8::from(dash.hash & 7 < 4));
         let scar = self.cells.at(uv, 0.12 * Vec2::new(fine, warp.x) + 0.05 * grain);
         let width = 0.28 + 0.24 * unit(scar.hash >> 4);
-        let diamond = scar.from.x.abs() / width + scar.from.y.abs() / (0.55 * width) + 0.35 * fine + 0.3 * grain;
+        let diamond = scar.from.x.abs() / width + scar.from.y.abs() / (0.8 * width) + 0.22 * fine + 0.2 * grain;
         let scar = smoothstep(1.0, 0.75, diamond) * f32::from(u8::from(scar.hash & 7 < 2));
         let dark = dash.max(scar);
         Point {
-            height: 0.5 + 0.05 * sheet - 0.22 * dash - 0.3 * scar * (0.4 + 0.6 * grain.abs()) + 0.12 * torn
+            height: 0.5 + 0.05 * sheet - 0.22 * dash - 0.3 * scar * (0.4 + 0.6 * grain.abs())
+                + 0.12 * torn
                 + bark.roughness * 0.05 * grain,
             face: 1.0 - dark,
             accent: (0.85 * torn + 0.45 * smoothstep(0.1, 0.6, warp.y + 0.3 * fine)).min(1.0) * (1.0 - dark),

@@ -68,8 +68,7 @@ impl Blade {
                 let at = |column: usize, row: usize| heights[row * ALONG + column];
                 let (left, right) = (column.saturating_sub(1), (column + 1).min(ALONG - 1));
                 let (under, over) = (row.saturating_sub(1), (row + 1).min(ACROSS - 1));
-                let rise =
-                    Vec2::new(at(right, row) - at(left, row), at(column, over) - at(column, under));
+                let rise = Vec2::new(at(right, row) - at(left, row), at(column, over) - at(column, under));
                 let run = Vec2::new((right - left) as f32, (over - under) as f32) / self.cells_per_unit;
                 self.places[row * ALONG + column].slope = rise / run;
             }
@@ -85,7 +84,9 @@ impl Blade {
         let (column, row) = (cell.x as usize, cell.y as usize);
         let (x, y) = (cell.x - column as f32, cell.y - row as f32);
         let mut sum = Place::default();
-        for (dx, dy, share) in [(0, 0, (1.0 - x) * (1.0 - y)), (1, 0, x * (1.0 - y)), (0, 1, (1.0 - x) * y), (1, 1, x * y)] {
+        for (dx, dy, share) in
+            [(0, 0, (1.0 - x) * (1.0 - y)), (1, 0, x * (1.0 - y)), (0, 1, (1.0 - x) * y), (1, 1, x * y)]
+        {
             let place = &self.places[(row + dy) * ALONG + column + dx];
             sum.inside += share * place.inside;
             sum.vein += share * place.vein;

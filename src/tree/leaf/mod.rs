@@ -86,7 +86,7 @@ impl Default for Leaf {
             curl: 0.5,
             shoots: 7,
             spacing: 0.42,
-            bare: 0.4,
+            bare: 0.25,
         }
     }
 }

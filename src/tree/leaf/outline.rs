@@ -158,8 +158,8 @@ fn palmate_margin(leaf: &Leaf, u: f32) -> Vec2 {
         .map(|&(towards, length, half)| {
             let off = (angle - towards).abs() / half;
             // Shoulders before the point: a maple's lobes have two teeth each.
-            let teeth = 0.10 * (1.0 - (2.6 * off - 1.0).abs()).max(0.0);
-            length * ((1.0 - 0.60 * off.powf(0.62)).max(0.0) + teeth)
+            let teeth = 0.13 * (1.0 - (2.6 * off - 1.0).abs()).max(0.0);
+            length * ((1.0 - 0.52 * off.powf(0.7)).max(0.0) + teeth)
         })
         .fold(0.16, f32::max);
     let radius = (1.0 - PALMATE_CENTRE) * reach;

@@ -55,10 +55,7 @@ pub fn leaf_textures(foliage: &Foliage, seed: u64) -> LeafTextures {
     leaves[..below].iter().for_each(|leaf| painter.leaf(&blade, leaf));
     shoots.iter().for_each(|shoot| painter.twig(shoot));
     leaves[below..].iter().for_each(|leaf| painter.leaf(&blade, leaf));
-    LeafTextures {
-        base_colour: painter.colours.into_mask_texture(),
-        normal: painter.normals.into_normal_texture(),
-    }
+    LeafTextures { base_colour: painter.colours.into_mask_texture(), normal: painter.normals.into_normal_texture() }
 }
 
 /// What is laid on a texel: how much of it is covered, colour, normal and translucency; or shade, where nothing is.
