@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     growth::{envelope::Envelope, reeves::leave},
-    leaf_texture::Leaf,
+    leaf::{Leaf, LeafArrangement},
     skeleton::{LeafCluster, SkeletonBeam, continuations},
     species::{SpeciesError, require},
 };
@@ -18,6 +18,32 @@ use crate::dynamics::leaf::LeafResponse;
 
 /// Most sprays on one tree.
 pub const CLUSTERS_LIMIT: usize = 16_384;
+
+/// The surface on which a spray is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect, Serialize, Deserialize)]
+pub enum Card {
+    /// A level kite: 4 vertices, a line when seen from its edge.
+    Flat,
+    /// A kite folded along its axis: 4 vertices, and no direction from which it vanishes.
+    #[default]
+    Folded,
+    /// A folded kite whose outer half bends down, too: 5 vertices, the nearest to a real spray.
+    Bent,
+    /// Two kites through one axis, at right angles: 8 vertices, for needles all around a twig.
+    Crossed,
+}
+
+impl Card {
+    /// Vertices of one card.
+    #[must_use]
+    pub fn vertices(self) -> usize {
+        match self {
+            Self::Flat | Self::Folded => 4,
+            Self::Bent => 5,
+            Self::Crossed => 8,
+        }
+    }
+}
 
 /// What a tree wears.
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
@@ -35,6 +61,12 @@ pub struct Foliage {
     pub size_spread: f32,
     /// Width of a spray's card as a share of its length, 0.1 to 2.
     pub aspect: f32,
+    /// The surface on which a spray is drawn.
+    pub card: Card,
+    /// How far the outer half of a [bent](Card::Bent) card turns down from the inner, degrees: -90 to 90.
+    pub bend_deg: f32,
+    /// How sprays are set along their branch: one, two or three at a place.
+    pub arrangement: LeafArrangement,
     /// How far each half of a card folds down from its axis, degrees: -80 to 80.
     pub fold_deg: f32,
     /// Angle between a spray and its branch, degrees: 0 to 150.
@@ -74,6 +106,9 @@ impl Default for Foliage {
             size_m: 1.05,
             size_spread: 0.35,
             aspect: 0.95,
+            card: Card::Folded,
+            bend_deg: 30.0,
+            arrangement: LeafArrangement::Alternate,
             fold_deg: 18.0,
             angle_deg: 55.0,
             roll_deg: 137.5,
@@ -99,6 +134,7 @@ impl Foliage {
         require("size_m", self.size_m, 0.02..=5.0)?;
         require("size_spread", self.size_spread, 0.0..=0.9)?;
         require("aspect", self.aspect, 0.1..=2.0)?;
+        require("bend_deg", self.bend_deg, -90.0..=90.0)?;
         require("fold_deg", self.fold_deg, -80.0..=80.0)?;
         require("angle_deg", self.angle_deg, 0.0..=150.0)?;
         require("roll_deg", self.roll_deg, -360.0..=360.0)?;
@@ -168,10 +204,18 @@ impl Twig<'_> {
         let spacing = self.foliage.spacing_m / self.beam.length_m;
         let mut roll = if random.random::<bool>() { 0.0 } else { self.foliage.roll_deg.to_radians() };
         let mut at = first_at + 0.5 * spacing * random.random::<f32>();
+        let around = match self.foliage.arrangement {
+            LeafArrangement::Alternate => 1,
+            LeafArrangement::Opposite => 2,
+            LeafArrangement::Whorled => 3,
+        };
         let spread = self.foliage.roll_spread_deg.to_radians();
         while at < 1.0 && clusters.len() < CLUSTERS_LIMIT {
-            let turn = roll + spread * random.random_range(-1.0..1.0);
-            clusters.push(self.spray(at, self.foliage.angle_deg.to_radians(), turn, random));
+            for place in 0..around {
+                let evenly = std::f32::consts::TAU * place as f32 / around as f32;
+                let turn = roll + evenly + spread * random.random_range(-1.0..1.0);
+                clusters.push(self.spray(at, self.foliage.angle_deg.to_radians(), turn, random));
+            }
             roll += self.foliage.roll_deg.to_radians();
             at += spacing * random.random_range(0.7..1.3);
         }

@@ -1,7 +1,8 @@
-//! The surface of the foliage: one folded card per spray.
+//! The surface of the foliage: a card for each spray.
 //!
-//! A card is a kite of four vertices, root, left, tip and right, folded along its axis: two triangles that show two
-//! brightnesses and no edge-on line. Its texture lies along the diagonal of a square, so the kite wastes no texels.
+//! A card is a kite, root, left, tip and right, folded along its axis: two triangles that show two brightnesses and no
+//! edge-on line. A bent card has a fifth vertex in its middle, crossed cards are two kites ([`Card`]). The texture lies
+//! along the diagonal of a square, so the kite wastes no texels.
 //! Normals lean from the card's own towards the way out of its clump (the branch it belongs to) and of the crown:
 //! light then models the crown's billows and not the single cards. They are meant to be drawn without flipping on
 //! the back side, for a leaf seen from behind is lit by the same sky.
@@ -9,6 +10,7 @@
 use bevy::math::Vec3;
 
 use super::{
+    foliage::{Card, Foliage},
     skeleton::{LeafCluster, Skeleton},
     species::Species,
 };
@@ -45,40 +47,33 @@ const CLUMP_SHADE: f32 = 0.38;
 #[must_use]
 pub fn leaves(species: &Species, skeleton: &Skeleton) -> LeafVertices {
     let foliage = &species.foliage;
-    let count = skeleton.clusters.len();
-    let mut out = LeafVertices::with_capacity(count);
+    let mut out = LeafVertices::with_capacity(skeleton.clusters.len() * foliage.card.vertices());
     let clumps = Clumps::of(skeleton);
-    let (fold_sin, fold_cos) = foliage.fold_deg.to_radians().sin_cos();
     for cluster in &skeleton.clusters {
         let outward = skeleton.envelope.outward(cluster.anchor);
         let from_clump = clumps.outward(cluster);
-        let side = cluster.axis.cross(cluster.normal);
-        let half_width_m = 0.5 * foliage.aspect * cluster.size_m;
-        let middle = cluster.anchor + cluster.axis * (WIDEST_AT * cluster.size_m);
-        let lowered = cluster.normal * (-fold_sin * half_width_m);
-        let kite = [
-            (cluster.anchor, cluster.normal, [0.0, 1.0]),
-            (middle - side * (fold_cos * half_width_m) + lowered, cluster.normal - side * fold_sin, [0.0, 0.0]),
-            (cluster.anchor + cluster.axis * cluster.size_m, cluster.normal, [1.0, 0.0]),
-            (middle + side * (fold_cos * half_width_m) + lowered, cluster.normal + side * fold_sin, [1.0, 1.0]),
-        ];
         let lit = 0.5 + 0.5 * from_clump.dot((outward + Vec3::Y).normalize_or(Vec3::Y));
         let light = foliage.light(cluster.depth) * (CLUMP_SHADE + (1.0 - CLUMP_SHADE) * lit.clamp(0.0, 1.0));
         let [own, clump, crown] = NORMAL_SHARES;
         let bent = from_clump * clump + outward * crown;
-        for (position, normal, uv) in kite {
-            let facing = if normal.dot(bent) < 0.0 { -own } else { own };
-            let normal = (normal * facing + bent).try_normalize().unwrap_or(outward);
-            out.push(cluster, position, normal, uv, light);
+        let kite = Kite::of(foliage, cluster);
+        let corners: &mut dyn Iterator<Item = Corner> = match foliage.card {
+            Card::Flat | Card::Folded => &mut kite.corners().into_iter(),
+            Card::Bent => &mut kite.corners().into_iter().chain([kite.centre()]),
+            Card::Crossed => &mut kite.corners().into_iter().chain(kite.crossing().corners()),
+        };
+        for corner in corners {
+            let facing = if corner.normal.dot(bent) < 0.0 { -own } else { own };
+            let normal = (corner.normal * facing + bent).try_normalize().unwrap_or(outward);
+            out.push(cluster, corner.position, normal, corner.uv, light);
         }
-        out.close_kite();
+        out.close(foliage.card);
     }
     out
 }
 
 impl LeafVertices {
-    fn with_capacity(cards: usize) -> Self {
-        let vertices = 4 * cards;
+    fn with_capacity(vertices: usize) -> Self {
         Self {
             positions: Vec::with_capacity(vertices),
             normals: Vec::with_capacity(vertices),
@@ -86,7 +81,7 @@ impl LeafVertices {
             sway: Vec::with_capacity(vertices),
             axis: Vec::with_capacity(vertices),
             anchor: Vec::with_capacity(vertices),
-            indices: Vec::with_capacity(6 * cards),
+            indices: Vec::with_capacity(3 * vertices),
         }
     }
 
@@ -99,10 +94,83 @@ impl LeafVertices {
         self.anchor.push(cluster.anchor.extend(0.0).to_array());
     }
 
-    /// The two halves of the kite of the last four vertices.
-    fn close_kite(&mut self) {
-        let root = self.positions.len() as u32 - 4;
-        self.indices.extend([root, root + 2, root + 1, root, root + 3, root + 2]);
+    /// The triangles of the card whose vertices were pushed last.
+    fn close(&mut self, card: Card) {
+        let root = (self.positions.len() - card.vertices()) as u32;
+        let triangles: &[u32] = match card {
+            Card::Flat | Card::Folded => &[0, 2, 1, 0, 3, 2],
+            Card::Bent => &[0, 4, 1, 4, 2, 1, 0, 3, 4, 4, 3, 2],
+            Card::Crossed => &[0, 2, 1, 0, 3, 2, 4, 6, 5, 4, 7, 6],
+        };
+        self.indices.extend(triangles.iter().map(|corner| root + corner));
+    }
+}
+
+/// A vertex of a card, before the crown bends its normal.
+struct Corner {
+    position: Vec3,
+    normal: Vec3,
+    uv: [f32; 2],
+}
+
+/// A spray's kite: all that its corners are found from.
+struct Kite {
+    anchor: Vec3,
+    axis: Vec3,
+    side: Vec3,
+    normal: Vec3,
+    /// From root to tip in a straight line, m.
+    length_m: f32,
+    half_width_m: f32,
+    /// Height of the middle above that line, m, and how far normals lean to both ends for it.
+    rise_m: f32,
+    lean: f32,
+    fold_rad: f32,
+}
+
+impl Kite {
+    fn of(foliage: &Foliage, cluster: &LeafCluster) -> Self {
+        // The two halves keep their lengths when they bend.
+        let bend_rad = if foliage.card == Card::Bent { 0.5 * foliage.bend_deg.to_radians() } else { 0.0 };
+        let fold_deg = if foliage.card == Card::Flat { 0.0 } else { foliage.fold_deg };
+        Self {
+            anchor: cluster.anchor,
+            axis: cluster.axis,
+            side: cluster.axis.cross(cluster.normal),
+            normal: cluster.normal,
+            length_m: cluster.size_m * bend_rad.cos(),
+            half_width_m: 0.5 * foliage.aspect * cluster.size_m,
+            rise_m: WIDEST_AT * cluster.size_m * bend_rad.sin(),
+            lean: bend_rad.sin(),
+            fold_rad: fold_deg.to_radians(),
+        }
+    }
+
+    fn middle(&self) -> Vec3 {
+        self.anchor + self.axis * (WIDEST_AT * self.length_m) + self.normal * self.rise_m
+    }
+
+    /// Root, left, tip, right.
+    fn corners(&self) -> [Corner; 4] {
+        let (fold_sin, fold_cos) = self.fold_rad.sin_cos();
+        let out = self.side * (fold_cos * self.half_width_m);
+        let low = self.middle() - self.normal * (fold_sin * self.half_width_m);
+        let (normal, lean, fold) = (self.normal, self.axis * self.lean, self.side * fold_sin);
+        [
+            Corner { position: self.anchor, normal: normal - lean, uv: [0.0, 1.0] },
+            Corner { position: low - out, normal: normal - fold, uv: [0.0, 0.0] },
+            Corner { position: self.anchor + self.axis * self.length_m, normal: normal + lean, uv: [1.0, 0.0] },
+            Corner { position: low + out, normal: normal + fold, uv: [1.0, 1.0] },
+        ]
+    }
+
+    fn centre(&self) -> Corner {
+        Corner { position: self.middle(), normal: self.normal, uv: [0.5, 0.5] }
+    }
+
+    /// The kite through the same axis at right angles.
+    fn crossing(&self) -> Self {
+        Self { side: self.normal, normal: -self.side, ..*self }
     }
 }
 

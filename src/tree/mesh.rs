@@ -2,13 +2,13 @@
 //!
 //! Every vertex is bound to one beam at one place on it and moves with that cross-section. No gap opens when the
 //! beams bend, for three reasons. A branch's beams share the ring at their joint: the end of one and the start of the
-//! next move alike. A branch's first ring lies wholly inside its parent, and it and the collar around the joint are
-//! bound to the branch's root, which moves with the parent. The trunk starts below the ground.
+//! next move alike. A branch's first ring stands on its parent, a little below the bark, and moves with it (see `joint.rs`); a thin or steep branch starts inside its parent instead. The trunk starts below the ground.
 
 use bevy::math::Vec3;
 
 use super::{
     growth::reeves::Trunk,
+    joint::{Fillet, Limb},
     skeleton::{Skeleton, SkeletonBeam},
     species::Species,
     tube::{Ring, Tube, inradius},
@@ -31,10 +31,14 @@ pub struct WoodVertices {
 
 /// How far the trunk reaches into the ground, m, so that a slope uncovers no hole.
 const ROOT_DEPTH_M: f32 = 0.35;
-/// Thinner branches have no collar: nobody sees it.
-const COLLAR_LEAST_RADIUS_M: f32 = 0.03;
-/// How much wider than the branch its collar is.
-const COLLAR_SWELLING: f32 = 1.3;
+/// Thinner branches have no fillet: nobody sees it.
+const FILLET_LEAST_RADIUS_M: f32 = 0.02;
+/// How much wider than the branch the foot of its fillet is, and how high the fillet, in radii of the branch.
+const FILLET_SPREAD: f32 = 0.8;
+const FILLET_RISE: f32 = 1.5;
+/// Least sine of the angle between a branch and its parent, and greatest share of a beam, that a fillet is made for.
+const FILLET_LEAST_SLANT: f32 = 0.35;
+const FILLET_LONGEST: f32 = 0.4;
 /// Thinner tips run into a point, thicker ones end in a cap.
 const POINTED_TIP_RADIUS_M: f32 = 0.02;
 /// Longest stretch of a beam without a ring, m: what its bending may be drawn with.
@@ -71,7 +75,7 @@ impl Branch<'_> {
         let first = &self.skeleton.beams[self.chain[0]];
         let covered = match first.parent {
             None => self.root_rings(trunk, &mut push),
-            Some(parent) => self.collar_rings(&self.skeleton.beams[parent as usize], &mut push),
+            Some(parent) => self.joint_rings(parent as usize, &mut push),
         };
         for (place, &index) in self.chain.iter().enumerate() {
             let beam = &self.skeleton.beams[index];
@@ -115,27 +119,41 @@ impl Branch<'_> {
         covered
     }
 
-    /// The ring inside the parent and the swelling around the joint, both moving with the parent.
-    fn collar_rings(&self, parent: &SkeletonBeam, push: &mut impl FnMut(Ring)) -> f32 {
+    /// The fillet around the joint, or one ring inside the parent; answers the place on the beam that they reach.
+    fn joint_rings(&self, parent: usize, push: &mut impl FnMut(Ring)) -> f32 {
         let index = self.chain[0];
         let beam = &self.skeleton.beams[index];
-        let inside_m = parent.radius_m(beam.attach);
+        let limb = limb(&self.skeleton.beams[parent], parent, beam.attach);
         let mut root = ring(beam, index, 0.0);
-        root.radius_m = (root.radius_m * COLLAR_SWELLING).min(0.95 * inside_m * inradius(parent.base_radius_m));
-        push(root);
-
-        let slant = beam.direction.cross(parent.tangent(beam.attach)).length().max(0.4);
-        let emerges = (1.05 * inside_m / slant + 0.3 * beam.base_radius_m) / beam.length_m;
-        if beam.base_radius_m < COLLAR_LEAST_RADIUS_M || emerges > 0.35 {
+        let slant = root.tangent.cross(limb.axis).length();
+        let room_m = 0.92 * limb.radius_m - beam.base_radius_m;
+        let spread_m = (FILLET_SPREAD * beam.base_radius_m).min(room_m);
+        let rise_m = FILLET_RISE * beam.base_radius_m;
+        let surface_m = limb.exit_m(beam.base, root.tangent).max(0.0);
+        let neck = (surface_m + rise_m) / beam.length_m;
+        let thin = beam.base_radius_m < FILLET_LEAST_RADIUS_M || spread_m <= 0.0;
+        if thin || slant < FILLET_LEAST_SLANT || neck > FILLET_LONGEST || beam.attach > 0.98 {
+            root.radius_m = root.radius_m.min(0.95 * limb.radius_m);
+            push(root);
             return 0.0;
         }
-        for (at, swelling) in [(0.7 * emerges, COLLAR_SWELLING), (1.7 * emerges, 1.04)] {
-            let mut collar = ring(beam, index, at);
-            collar.radius_m = (collar.radius_m * swelling).min(inside_m);
-            collar.s = if swelling > 1.1 { 0.0 } else { at };
-            push(collar);
+        for phi_rad in Fillet::PHI_RAD {
+            let fillet = Fillet { limb, phi_rad, spread_m, rise_m };
+            let along_m = surface_m + fillet.height_m();
+            let s = along_m / beam.length_m;
+            // The line from the root is straight, the branch may be bowed: its neck must stand on the branch.
+            let foot = beam.path(s) - root.tangent * along_m;
+            let foot = beam.base.lerp(foot, phi_rad.sin());
+            push(Ring {
+                centre: foot + root.tangent * along_m,
+                tangent: root.tangent,
+                radius_m: beam.radius_m(s),
+                s: if phi_rad < 1.0 { 0.0 } else { s },
+                joint: Some((fillet, foot)),
+                ..root
+            });
         }
-        1.8 * emerges
+        1.15 * neck
     }
 
     fn tip(&self, push: &mut impl FnMut(Ring)) {
@@ -158,8 +176,27 @@ fn ring(beam: &SkeletonBeam, index: usize, s: f32) -> Ring {
         lobes: (0, 0.0),
         beam: index as u32,
         s,
+        joint: None,
     }
 }
+
+/// A beam about a place on it, as it is drawn: between its rings it is straight.
+fn limb(beam: &SkeletonBeam, index: usize, at: f32) -> Limb {
+    let steps = steps(beam) as f32;
+    let low = (at * steps).floor().min(steps - 1.0);
+    let (from, to) = (beam.path(low / steps), beam.path((low + 1.0) / steps));
+    Limb {
+        point: from.lerp(to, at * steps - low),
+        axis: (to - from).try_normalize().unwrap_or(beam.direction),
+        radius_m: FOOT_DEPTH * beam.radius_m(at) * inradius(beam.base_radius_m),
+        beam: index as u32,
+        at,
+        length_m: beam.length_m,
+    }
+}
+
+/// The foot of a fillet stands at this share of the parent's inscribed radius, so that taper shows no gap.
+const FOOT_DEPTH: f32 = 0.97;
 
 /// Rings a beam needs: enough that the polygon keeps within a third of its radius (and 6 cm for the thinnest) of the
 /// bowed path, and that long beams bend smoothly.

@@ -5,7 +5,7 @@
 
 use bevy::math::{Quat, Vec3};
 
-use super::mesh::WoodVertices;
+use super::{joint::Fillet, mesh::WoodVertices};
 
 /// A cross-section of a branch.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,8 @@ pub(super) struct Ring {
     pub lobes: (u32, f32),
     pub beam: u32,
     pub s: f32,
+    /// Where the ring belongs to a joint: `centre` is then on the line from the branch's root, `joint.1`.
+    pub joint: Option<(Fillet, Vec3)>,
 }
 
 impl Ring {
@@ -110,12 +112,21 @@ impl Tube {
             let (sin, cos) = angle_rad.sin_cos();
             let radial = frame.across * cos + around * sin;
             let tangential = around * cos - frame.across * sin;
-            let position = ring.centre + radial * ring.radius_at(angle_rad);
-            let normal = radial - tangential * ring.slope_at(angle_rad) + ring.tangent * frame.taper;
+            let mut bound = (ring.beam, ring.s);
+            let mut v = frame.v;
+            let (position, normal) = if let Some((fillet, root)) = &ring.joint {
+                let point = fillet.point(*root, ring.tangent, radial, ring.radius_m);
+                v += (point.along_m - ring.centre.distance(*root)) / self.tile_m;
+                bound = point.bound.unwrap_or(bound);
+                (point.position, point.normal)
+            } else {
+                let slope = tangential * ring.slope_at(angle_rad);
+                (ring.centre + radial * ring.radius_at(angle_rad), radial - slope + ring.tangent * frame.taper)
+            };
             out.positions.push(position.to_array());
             out.normals.push(normal.normalize().to_array());
-            out.uvs.push([share * self.turns, frame.v]);
-            out.sway.push([ring.beam as f32, ring.s, 0.0, frame.light]);
+            out.uvs.push([share * self.turns, v]);
+            out.sway.push([bound.0 as f32, bound.1, 0.0, frame.light]);
         }
     }
 

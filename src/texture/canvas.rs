@@ -4,6 +4,8 @@
 //! distance, for the cut-off keeps only what is more than half covered; each mip's alpha is therefore scaled until
 //! as many of its texels pass the cut-off as in the first (Castaño, "Computing alpha mipmaps", 2010).
 
+use std::sync::LazyLock;
+
 /// A texture of 8-bit RGBA with mips down to one texel.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextureData {
@@ -25,16 +27,16 @@ const HALF_A_STEP: f32 = 0.6 / 255.0;
 
 /// An image in linear floats, before it is a texture.
 #[derive(Clone, Debug)]
-pub(super) struct Canvas {
+pub(crate) struct Canvas {
     pub width: usize,
     pub height: usize,
-    /// Linear red, green, blue and alpha, 0..1 (normals: -1..1).
+    /// Linear red, green, blue and alpha, 0..1 (normals: -1..1, alpha free for another measure, 0..1).
     pub texels: Vec<[f32; 4]>,
 }
 
 impl Canvas {
     /// A canvas of `size` x `size` texels of one colour.
-    pub(super) fn filled(size: usize, texel: [f32; 4]) -> Self {
+    pub(crate) fn filled(size: usize, texel: [f32; 4]) -> Self {
         Self { width: size, height: size, texels: vec![texel; size * size] }
     }
 
@@ -81,17 +83,17 @@ impl Canvas {
     }
 
     /// Half the size, for what was painted at twice the resolution; colour comes from what is covered.
-    pub(super) fn downsampled(&self) -> Self {
+    pub(crate) fn downsampled(&self) -> Self {
         self.halved(|texel| texel[3] + 1e-4)
     }
 
     /// Opaque colours.
-    pub(super) fn into_colour_texture(self) -> TextureData {
+    pub(crate) fn into_colour_texture(self) -> TextureData {
         self.into_texture(|canvas| canvas.halved(|_| 1.0), colour_bytes, true)
     }
 
     /// Colours with a mask whose coverage stays the same in every mip.
-    pub(super) fn into_mask_texture(self) -> TextureData {
+    pub(crate) fn into_mask_texture(self) -> TextureData {
         let coverage = self.coverage();
         let shrink = |canvas: &Self| {
             let mut half = canvas.downsampled();
@@ -101,8 +103,13 @@ impl Canvas {
         self.into_texture(shrink, colour_bytes, true)
     }
 
-    /// Unit normals in tangent space.
-    pub(super) fn into_normal_texture(self) -> TextureData {
+    /// Measures that are no colours, each channel averaged by itself.
+    pub(crate) fn into_linear_texture(self) -> TextureData {
+        self.into_texture(|canvas| canvas.halved(|_| 1.0), linear_bytes, false)
+    }
+
+    /// Unit normals in tangent space; alpha is kept.
+    pub(crate) fn into_normal_texture(self) -> TextureData {
         self.into_texture(|canvas| canvas.halved(|_| 1.0), normal_bytes, false)
     }
 
@@ -128,25 +135,39 @@ fn colour_bytes(texel: &[f32; 4]) -> [u8; 4] {
 fn normal_bytes(texel: &[f32; 4]) -> [u8; 4] {
     let length = (texel[0] * texel[0] + texel[1] * texel[1] + texel[2] * texel[2]).sqrt().max(1e-6);
     let channel = |value: f32| byte(0.5 + 0.5 * value / length);
-    [channel(texel[0]), channel(texel[1]), channel(texel[2]), 255]
+    [channel(texel[0]), channel(texel[1]), channel(texel[2]), byte(texel[3])]
+}
+
+fn linear_bytes(texel: &[f32; 4]) -> [u8; 4] {
+    texel.map(byte)
 }
 
 fn byte(value: f32) -> u8 {
     (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
 }
 
-/// The sRGB transfer function (IEC 61966-2-1).
+/// The sRGB transfer function (IEC 61966-2-1), looked up: a power for each channel of each texel is what painting would
+/// mostly cost.
 fn srgb_byte(linear: f32) -> u8 {
-    byte(if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 })
+    static BYTES: LazyLock<Vec<u8>> = LazyLock::new(|| {
+        let encoded = |linear: f32| {
+            if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+        };
+        (0..=SRGB_STEPS).map(|step| byte(encoded(step as f32 / SRGB_STEPS as f32))).collect()
+    });
+    BYTES[(linear.clamp(0.0, 1.0) * SRGB_STEPS as f32 + 0.5) as usize]
 }
 
+/// Steps of linear light told apart: black's slope is 12.92, so that one step is a fifth of a byte there.
+const SRGB_STEPS: usize = 16_384;
+
 /// An sRGB colour as light.
-pub(super) fn linear(srgb: [f32; 3]) -> [f32; 3] {
+pub(crate) fn linear(srgb: [f32; 3]) -> [f32; 3] {
     srgb.map(|value| if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) })
 }
 
 /// The colour `share` of the way from one to another.
-pub(super) fn mix(from: [f32; 3], to: [f32; 3], share: f32) -> [f32; 3] {
+pub(crate) fn mix(from: [f32; 3], to: [f32; 3], share: f32) -> [f32; 3] {
     std::array::from_fn(|channel| from[channel] + (to[channel] - from[channel]) * share)
 }
 

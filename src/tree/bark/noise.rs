@@ -1,0 +1,117 @@
+//! Noise that tiles: gradient noise (Perlin 1985) and cells (Worley 1996) of whole periods over the tile.
+
+use bevy::math::Vec2;
+
+/// Mixes lattice point, salt and seed (the finaliser of `MurmurHash3`).
+pub(super) fn hash(x: i32, y: i32, salt: u32) -> u32 {
+    let mut hash = salt.wrapping_mul(0xc2b2_ae3d) ^ (x as u32).wrapping_mul(0x9e37_79b1);
+    hash ^= (y as u32).wrapping_mul(0x85eb_ca77);
+    hash = (hash ^ (hash >> 16)).wrapping_mul(0x85eb_ca6b);
+    hash = (hash ^ (hash >> 13)).wrapping_mul(0xc2b2_ae35);
+    hash ^ (hash >> 16)
+}
+
+/// The low bits as a share of one.
+pub(super) fn unit(hash: u32) -> f32 {
+    (hash & 0xffff) as f32 / 65_536.0
+}
+
+/// 0 below `low` to 1 above `high`, with level ends.
+pub(super) fn smoothstep(low: f32, high: f32, value: f32) -> f32 {
+    let share = ((value - low) / (high - low)).clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}
+
+/// Gradient noise with its lattice drawn up beforehand: the last column and row repeat the first.
+pub(super) struct Noise {
+    size: Vec2,
+    stride: usize,
+    gradients: Vec<Vec2>,
+}
+
+impl Noise {
+    pub(super) fn new(columns: u32, rows: u32, salt: u32) -> Self {
+        let (columns, rows) = (columns.max(1) as i32, rows.max(1) as i32);
+        let gradients = (0..(columns + 1) * (rows + 1))
+            .map(|point| {
+                let hash = hash(point % (columns + 1) % columns, point / (columns + 1) % rows, salt);
+                Vec2::from_angle(std::f32::consts::TAU * unit(hash))
+            })
+            .collect();
+        Self { size: Vec2::new(columns as f32, rows as f32), stride: columns as usize + 1, gradients }
+    }
+
+    /// About -1..1; `uv` from 0 up to but not including 1.
+    pub(super) fn at(&self, uv: Vec2) -> f32 {
+        let point = uv * self.size;
+        // `uv` is not negative, so truncation is the floor (which is a call on plain x86-64).
+        let (x, y) = (point.x as usize, point.y as usize);
+        let within = point - Vec2::new(x as f32, y as f32);
+        let fade = within * within * (Vec2::splat(3.0) - 2.0 * within);
+        let corner = |dx: usize, dy: usize| {
+            self.gradients[(y + dy) * self.stride + x + dx].dot(within - Vec2::new(dx as f32, dy as f32))
+        };
+        let top = corner(0, 0) + (corner(1, 0) - corner(0, 0)) * fade.x;
+        let bottom = corner(0, 1) + (corner(1, 1) - corner(0, 1)) * fade.x;
+        1.4 * (top + (bottom - top) * fade.y)
+    }
+}
+
+/// What is known of the nearest cell.
+#[derive(Clone, Copy)]
+pub(super) struct Cell {
+    /// Difference of the distances to the second nearest and the nearest centre: 0 between two cells.
+    pub edge: f32,
+    /// From the nearest centre, in cells.
+    pub from: Vec2,
+    /// Random bits of the nearest cell.
+    pub hash: u32,
+}
+
+/// A jittered grid of cells.
+pub(super) struct Cells {
+    columns: i32,
+    rows: i32,
+    salt: u32,
+    jitter: f32,
+}
+
+impl Cells {
+    pub(super) fn new(columns: u32, rows: u32, jitter: f32, salt: u32) -> Self {
+        Self { columns: columns.max(1) as i32, rows: rows.max(1) as i32, salt, jitter }
+    }
+
+    /// The cell at `uv` (any value), displaced by `warp` in cells.
+    pub(super) fn at(&self, uv: Vec2, warp: Vec2) -> Cell {
+        let point = uv * Vec2::new(self.columns as f32, self.rows as f32) + warp;
+        let home = point.floor();
+        let (home_x, home_y) = ((home.x as i32).rem_euclid(self.columns), (home.y as i32).rem_euclid(self.rows));
+        let within = point - home;
+        let (mut nearest, mut second) = (f32::INFINITY, f32::INFINITY);
+        let mut cell = Cell { edge: 0.0, from: Vec2::ZERO, hash: 0 };
+        for step in 0..9 {
+            let (dx, dy) = (step % 3 - 1, step / 3 - 1);
+            let hash = hash(wrapped(home_x + dx, self.columns), wrapped(home_y + dy, self.rows), self.salt);
+            let jitter = Vec2::new(unit(hash), unit(hash >> 16)) * self.jitter + 0.5 * (1.0 - self.jitter);
+            let from = within - Vec2::new(dx as f32, dy as f32) - jitter;
+            let distance = from.length_squared();
+            if distance < nearest {
+                (second, nearest) = (nearest, distance);
+                (cell.from, cell.hash) = (from, hash);
+            } else {
+                second = second.min(distance);
+            }
+        }
+        cell.edge = second.sqrt() - nearest.sqrt();
+        cell
+    }
+}
+
+/// The lattice point past the last is the first again, and the one before the first the last.
+fn wrapped(index: i32, count: i32) -> i32 {
+    match index {
+        _ if index >= count => index - count,
+        _ if index < 0 => index + count,
+        _ => index,
+    }
+}

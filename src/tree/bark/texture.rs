@@ -1,0 +1,126 @@
+//! Paints a bark: its pattern's heights become normals and occlusion, what it shows becomes colour.
+
+use bevy::math::Vec2;
+
+use super::{
+    Bark,
+    pattern::{Pattern, Point},
+};
+use crate::texture::{Canvas, TextureData, linear, mix};
+
+/// The textures of a bark; all tile in both directions, u around the branch, v along it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BarkTextures {
+    /// Colour, sRGB, opaque.
+    pub base_colour: TextureData,
+    /// Tangent-space normals, +x along u, +y against v (up in the image), linear.
+    pub normal: TextureData,
+    /// Ambient occlusion in red (1 is open), roughness in green, metal (none) in blue, linear, as glTF has it: one image
+    /// for both `occlusion_texture` and `metallic_roughness_texture`.
+    pub surface: TextureData,
+}
+
+/// Side of the textures, texels.
+pub(super) const SIZE: usize = 512;
+/// How far furrows shade themselves, texels.
+const OCCLUSION_REACH: usize = 9;
+/// Occlusion for a furrow as deep as a plate is wide.
+const OCCLUSION: f32 = 1.5;
+/// Occlusion that is painted into the colour, too: direct light is shaded in furrows as well.
+const PAINTED_OCCLUSION: f32 = 0.6;
+
+/// Paints a bark.
+#[must_use]
+pub fn bark_textures(bark: &Bark, seed: u64) -> BarkTextures {
+    let pattern = Pattern::new(bark, seed as u32 ^ (seed >> 32) as u32);
+    let points: Vec<Point> = (0..SIZE * SIZE)
+        .map(|index| {
+            let texel = Vec2::new((index % SIZE) as f32 + 0.5, (index / SIZE) as f32 + 0.5);
+            pattern.at(texel / SIZE as f32)
+        })
+        .collect();
+    let heights: Vec<f32> = points.iter().map(|point| point.height).collect();
+    let around = blurred(&heights, OCCLUSION_REACH);
+    let colours = Colours::of(bark);
+    let mut base_colour = Canvas::filled(SIZE, [0.0; 4]);
+    let mut normal = Canvas::filled(SIZE, [0.0; 4]);
+    let mut surface = Canvas::filled(SIZE, [0.0; 4]);
+    let slope = bark.depth * SIZE as f32 / (2.0 * bark.plates_around as f32);
+    for (index, point) in points.iter().enumerate() {
+        let sunk = (around[index] - point.height).max(0.0);
+        let open = 1.0 / (1.0 + OCCLUSION * (0.3 + bark.depth) * sunk * 2.0);
+        base_colour.texels[index] = colours.at(point, 1.0 - PAINTED_OCCLUSION * (1.0 - open));
+        surface.texels[index] = [open, 0.95 - 0.12 * point.face, 0.0, 1.0];
+        let lean = gradient(&heights, index % SIZE, index / SIZE) * slope;
+        normal.texels[index] = [-lean.x, lean.y, 1.0, 1.0];
+    }
+    BarkTextures {
+        base_colour: base_colour.into_colour_texture(),
+        normal: normal.into_normal_texture(),
+        surface: surface.into_linear_texture(),
+    }
+}
+
+/// Linear colours.
+struct Colours {
+    face: [f32; 3],
+    furrow: [f32; 3],
+    accent: [f32; 3],
+    lichen: [f32; 3],
+}
+
+impl Colours {
+    fn of(bark: &Bark) -> Self {
+        Self {
+            face: linear(bark.colour),
+            furrow: linear(bark.furrow_colour),
+            accent: linear(bark.accent_colour),
+            lichen: linear(bark.lichen_colour),
+        }
+    }
+
+    fn at(&self, point: &Point, light: f32) -> [f32; 4] {
+        let bare = mix(self.face, self.accent, point.accent);
+        let face = mix(bare, self.lichen, 0.8 * point.lichen).map(|channel| channel * point.tone);
+        let [red, green, blue] = mix(self.furrow, face, point.face).map(|channel| channel * light);
+        [red, green, blue, 1.0]
+    }
+}
+
+/// Rise over two texels, towards +u and +v.
+fn gradient(heights: &[f32], x: usize, y: usize) -> Vec2 {
+    let height = |x: usize, y: usize| heights[(y % SIZE) * SIZE + x % SIZE];
+    Vec2::new(height(x + 1, y) - height(x + SIZE - 1, y), height(x, y + 1) - height(x, y + SIZE - 1))
+}
+
+/// Means over squares of `2 reach + 1` texels that wrap around, by running sums along rows and then along columns.
+fn blurred(heights: &[f32], reach: usize) -> Vec<f32> {
+    let mut rows = vec![0.0; SIZE * SIZE];
+    let share = 1.0 / (2 * reach + 1) as f32;
+    for (row, out) in heights.chunks_exact(SIZE).zip(rows.chunks_exact_mut(SIZE)) {
+        let mut sum: f32 = (0..=2 * reach).map(|k| row[(k + SIZE - reach) % SIZE]).sum();
+        for x in 0..SIZE {
+            out[x] = sum * share;
+            sum += row[(x + reach + 1) % SIZE] - row[(x + SIZE - reach) % SIZE];
+        }
+    }
+    let mut out = vec![0.0; SIZE * SIZE];
+    let line = |y: usize| &rows[(y % SIZE) * SIZE..(y % SIZE + 1) * SIZE];
+    let mut sums = vec![0.0_f32; SIZE];
+    for k in 0..=2 * reach {
+        sums.iter_mut().zip(line(k + SIZE - reach)).for_each(|(sum, value)| *sum += value);
+    }
+    for y in 0..SIZE {
+        for x in 0..SIZE {
+            out[y * SIZE + x] = sums[x] * share;
+        }
+        let (entering, leaving) = (line(y + reach + 1), line(y + SIZE - reach));
+        for (sum, (enters, leaves)) in sums.iter_mut().zip(entering.iter().zip(leaving)) {
+            *sum += enters - leaves;
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests;

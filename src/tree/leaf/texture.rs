@@ -1,0 +1,189 @@
+//! The picture of one spray: a twig with its leaves, cut out by its alpha, and how its surface lies.
+//!
+//! The twig runs along the diagonal of the square from its lower left to its upper right corner, as the cards of
+//! [`leaf_mesh`](crate::tree::leaf_mesh) want it. Leaves are painted from the lowest to the topmost; each is covered by
+//! its signed distance to the margin, in texels, and throws a soft shade on what lies below it.
+
+use bevy::math::Vec2;
+use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
+
+use super::{
+    Leaf,
+    blade::{Blade, Place},
+    spray::{PlacedLeaf, Shoot, shoots},
+};
+use crate::{
+    texture::{Canvas, TextureData, linear, mix},
+    tree::foliage::Foliage,
+};
+
+/// The two textures of a spray.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LeafTextures {
+    /// Colour, sRGB, and mask.
+    pub base_colour: TextureData,
+    /// Tangent-space normals, +x along u, +y against v, linear; in alpha the share of light that comes through, against
+    /// the species': less in veins, none in twigs.
+    pub normal: TextureData,
+}
+
+/// Side of the texture, texels.
+const SIZE: usize = 512;
+/// Texels in a unit of length on the drawing: the twig runs along the diagonal.
+const TEXELS: f32 = SIZE as f32 * std::f32::consts::SQRT_2;
+/// Brightness of the lowest leaves of a spray against the topmost.
+const LOWEST_SHADE: f32 = 0.55;
+/// Darkness of the shade that a leaf throws, and how far it falls in the units of the drawing.
+const SHADE: f32 = 0.38;
+const SHADE_REACH: f32 = 0.012;
+
+/// Paints a spray.
+#[must_use]
+pub fn leaf_textures(foliage: &Foliage, seed: u64) -> LeafTextures {
+    let leaf = &foliage.leaf;
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let shoots = shoots(leaf, &mut random);
+    let mut leaves = Vec::new();
+    shoots.iter().for_each(|shoot| shoot.leaf_out(leaf, &mut leaves, &mut random));
+    // Painter's order: sprays are seen from above, where the lighter leaves are.
+    leaves.sort_by(|a, b| a.level.total_cmp(&b.level));
+
+    let blade = Blade::new(leaf);
+    let mut painter = Painter::new(leaf);
+    // Some leaves hang below the twigs.
+    let below = leaves.len() / 4;
+    leaves[..below].iter().for_each(|leaf| painter.leaf(&blade, leaf));
+    shoots.iter().for_each(|shoot| painter.twig(shoot));
+    leaves[below..].iter().for_each(|leaf| painter.leaf(&blade, leaf));
+    LeafTextures { base_colour: painter.colours.into_mask_texture(), normal: painter.normals.into_normal_texture() }
+}
+
+/// What is laid on a texel: how much of it is covered, colour, normal and translucency; or shade, where nothing is.
+struct Paint {
+    coverage: f32,
+    shade: f32,
+    colour: [f32; 3],
+    normal: [f32; 4],
+}
+
+struct Painter {
+    colours: Canvas,
+    normals: Canvas,
+    colour: [f32; 3],
+    young: [f32; 3],
+    back: [f32; 3],
+    bark: [f32; 3],
+}
+
+impl Painter {
+    fn new(leaf: &Leaf) -> Self {
+        let colour = linear(leaf.colour);
+        let ground = mix(colour, [0.0; 3], 0.3);
+        Self {
+            colours: Canvas::filled(SIZE, [ground[0], ground[1], ground[2], 0.0]),
+            normals: Canvas::filled(SIZE, [0.0, 0.0, 1.0, 1.0]),
+            colour,
+            young: linear(leaf.young_colour),
+            back: linear(leaf.back_colour),
+            bark: linear(leaf.twig_colour),
+        }
+    }
+
+    fn twig(&mut self, shoot: &Shoot) {
+        let axis = shoot.tip - shoot.root;
+        let (radius, bark) = (shoot.radius, self.bark);
+        let direction = axis.normalize_or(Vec2::X);
+        self.stamp(shoot.root + 0.5 * axis, 0.5 * axis.length() + 2.0 * radius, |point| {
+            let share = ((point - shoot.root).dot(axis) / axis.length_squared().max(1e-9)).clamp(0.0, 1.0);
+            let tapered = radius * (1.0 - 0.5 * share);
+            let side = (point - shoot.root - axis * share).dot(direction.perp()) / tapered;
+            let off = point.distance(shoot.root + axis * share);
+            let coverage = (0.5 + (tapered - off) * TEXELS).clamp(0.0, 1.0);
+            let lit = 1.1 - 0.5 * side.clamp(-1.0, 1.0).powi(2);
+            let normal = normal(direction.perp() * side.clamp(-0.9, 0.9), 0.0);
+            Some(Paint { coverage, shade: 0.0, colour: bark.map(|channel| channel * lit), normal })
+        });
+    }
+
+    fn leaf(&mut self, blade: &Blade, leaf: &PlacedLeaf) {
+        let level = LOWEST_SHADE + (1.0 - LOWEST_SHADE) * leaf.level;
+        let grown = mix(self.colour, self.young, (0.75 * leaf.youth + 0.35 * leaf.tone).min(1.0));
+        let base = if leaf.turned { mix(grown, self.back, 0.85) } else { grown };
+        let tone = level * (0.85 + 0.3 * leaf.tone);
+        let texels = leaf.length * leaf.seen.min_element() * TEXELS;
+        let middle = leaf.root + leaf.direction * (0.5 * leaf.length);
+        // Bent leaves reach a little further.
+        self.stamp(middle, (blade.reach() + leaf.bend.abs()) * leaf.length, |point| {
+            let place = blade.at(leaf.local(point))?;
+            let coverage = (0.5 + place.inside * texels).clamp(0.0, 1.0);
+            let near = 1.0 + place.inside * leaf.length / SHADE_REACH;
+            let shade = SHADE * near.clamp(0.0, 1.0);
+            if coverage <= 0.0 && shade <= 0.0 {
+                return None;
+            }
+            let side = if leaf.turned { -1.0 } else { 1.0 };
+            let slope = leaf.direction * place.slope.x + leaf.direction.perp() * place.slope.y;
+            Some(Paint {
+                coverage,
+                shade,
+                colour: colour(base, tone, leaf, &place),
+                normal: normal(-side * slope, 1.0 - 0.55 * place.vein),
+            })
+        });
+    }
+
+    /// Lays on what `paint` answers within `radius` of `centre`.
+    fn stamp(&mut self, centre: Vec2, radius: f32, paint: impl Fn(Vec2) -> Option<Paint>) {
+        let size = SIZE as f32;
+        // (along, across) to the unit square: x = along + across, y = 1 - along + across.
+        let middle = Vec2::new(centre.x + centre.y, 1.0 - centre.x + centre.y) * size;
+        let reach = Vec2::splat(radius * std::f32::consts::SQRT_2 * size + 1.0);
+        let low = (middle - reach).clamp(Vec2::ZERO, Vec2::splat(size)).as_uvec2();
+        let high = (middle + reach).clamp(Vec2::ZERO, Vec2::splat(size)).as_uvec2();
+        for y in low.y..high.y {
+            for x in low.x..high.x {
+                let (u, v) = ((x as f32 + 0.5) / size, (y as f32 + 0.5) / size);
+                let point = Vec2::new(0.5 * (u + 1.0 - v), 0.5 * (u + v - 1.0));
+                if let Some(paint) = paint(point) {
+                    self.lay(y as usize * SIZE + x as usize, &paint);
+                }
+            }
+        }
+    }
+
+    /// One texel: what is there is shaded, then covered (Porter & Duff 1984, "over").
+    fn lay(&mut self, index: usize, paint: &Paint) {
+        let below = &mut self.colours.texels[index];
+        let kept = below[3] * (1.0 - paint.coverage);
+        let alpha = kept + paint.coverage;
+        if alpha > 0.0 {
+            for channel in 0..3 {
+                let shaded = below[channel] * (1.0 - paint.shade);
+                below[channel] = (kept * shaded + paint.coverage * paint.colour[channel]) / alpha;
+            }
+            below[3] = alpha;
+        }
+        let normal = &mut self.normals.texels[index];
+        for (channel, &laid) in normal.iter_mut().zip(&paint.normal) {
+            *channel += (laid - *channel) * paint.coverage;
+        }
+    }
+}
+
+/// Colour of a place on a leaf: paler veins, one half a little brighter, a darker rim.
+fn colour(base: [f32; 3], tone: f32, leaf: &PlacedLeaf, place: &Place) -> [f32; 3] {
+    let light = 1.0 + 0.5 * place.slope.y.clamp(-0.3, 0.3) * if leaf.turned { -1.0 } else { 1.0 };
+    let rim = 0.84 + 0.16 * (place.inside / 0.03).clamp(0.0, 1.0);
+    let pale = mix(base, [0.42, 0.50, 0.20], if leaf.turned { 0.45 } else { 0.35 });
+    mix(base, pale, place.vein).map(|channel| channel * tone * light * rim)
+}
+
+/// A normal that leans by `lean` (along, across), as the texture sees it, and a translucency.
+fn normal(lean: Vec2, translucency: f32) -> [f32; 4] {
+    const HALF: f32 = std::f32::consts::FRAC_1_SQRT_2;
+    // u = along + across, up = along - across.
+    [HALF * (lean.x + lean.y), HALF * (lean.x - lean.y), 1.0, translucency]
+}
+
+#[cfg(test)]
+mod tests;
