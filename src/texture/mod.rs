@@ -1,0 +1,3 @@
+//! Textures as functions of place, before they are pixels: pure, and knowing no other room.
+
+pub mod fourier;
