@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use bevy_windwood::tree::{Species, TreeModel, bark::bark_textures, leaf_texture::leaf_texture, skeleton::grow};
+use bevy_windwood::tree::{Species, TreeModel, bark::bark_textures, leaf::leaf_textures, skeleton::grow};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 fn oak() -> Species {
@@ -42,7 +42,7 @@ fn textures(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("texture");
     group.sample_size(20);
     group.bench_function("bark", |bencher| bencher.iter(|| bark_textures(black_box(&oak.wood.bark), 1)));
-    group.bench_function("leaf", |bencher| bencher.iter(|| leaf_texture(black_box(&oak.foliage), 1)));
+    group.bench_function("leaf", |bencher| bencher.iter(|| leaf_textures(black_box(&oak.foliage), 1)));
     group.finish();
 }
 

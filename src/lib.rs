@@ -25,13 +25,15 @@
 //! |---|---|---|
 //! | [`wind`] | spectra, field, gusts, [`Wind`](wind::Wind), [`WindCell`](wind::WindCell) | nobody |
 //! | [`dynamics`] | cantilevers, oscillators, load bases, response tables, poses; no ECS | nobody |
-//! | [`tree`] | species, growth, meshes, [`Tree`](tree::Tree) | dynamics |
-//! | [`sway`] | trees in the wind, on the processor and in shaders | all three |
+//! | [`texture`] | the canvas with its mips, Fourier textures | nobody |
+//! | [`tree`] | species, growth, meshes, [`Tree`](tree::Tree), [`Season`](tree::Season) | dynamics, texture |
+//! | [`sway`] | trees in the wind, on the processor and in shaders | all four |
 
 mod schedule;
 
 pub mod dynamics;
 pub mod sway;
+pub mod texture;
 pub mod tree;
 pub mod wind;
 

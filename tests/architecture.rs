@@ -6,8 +6,13 @@ use std::{
 };
 
 /// A room and the rooms it may import. A room that is not here may not exist.
-const MAY_KNOW: [(&str, &[&str]); 4] =
-    [("wind", &[]), ("dynamics", &[]), ("tree", &["dynamics"]), ("sway", &["tree", "wind", "dynamics"])];
+const MAY_KNOW: [(&str, &[&str]); 5] = [
+    ("wind", &[]),
+    ("dynamics", &[]),
+    ("texture", &[]),
+    ("tree", &["dynamics", "texture"]),
+    ("sway", &["tree", "wind", "dynamics", "texture"]),
+];
 
 /// Files that glue a room to the engine. All others of `wind`, `dynamics` and `tree` are pure: they can be read beside the
 /// paper, and know no entities, systems or apps.

@@ -10,13 +10,14 @@ use super::{
     stand::Stand,
     upload::StandBuffers,
 };
+use crate::texture::TextureData;
 use crate::tree::{
     Grove, Species, SpeciesBaked, TreeModel,
-    bark::{BarkTextures, bark_textures},
+    bark::BarkTextures,
+    growth::Growth,
     leaf_mesh::LeafVertices,
-    leaf_texture::leaf_texture,
     mesh::WoodVertices,
-    texture::TextureData,
+    painting::{SpeciesTextures, paint},
 };
 use bevy::{
     asset::RenderAssetUsages,
@@ -55,7 +56,7 @@ pub(super) struct VariantLook {
 /// What is prepared in the background.
 struct Cut {
     /// Painted once for all ages.
-    textures: Option<(BarkTextures, TextureData)>,
+    textures: Option<SpeciesTextures>,
     meshes: Vec<(Mesh, Option<Mesh>)>,
 }
 
@@ -105,12 +106,8 @@ pub(super) fn start_tailoring(
 }
 
 fn cut(species: &Species, painting: bool, variants: Vec<TreeModel>) -> Cut {
-    let paint = || {
-        let bark = bark_textures(&species.wood.bark, species.seed);
-        (bark, leaf_texture(&species.foliage, species.seed))
-    };
     Cut {
-        textures: painting.then(paint),
+        textures: painting.then(|| paint(species)),
         meshes: variants.into_iter().map(|model| (wood_mesh(model.wood), leaf_mesh(model.leaves))).collect(),
     }
 }
@@ -194,22 +191,17 @@ impl Atelier<'_> {
         }
     }
 
-    fn outfits(
-        &mut self,
-        species: &Species,
-        generation: u64,
-        (bark, leaf): &(BarkTextures, TextureData),
-    ) -> SpeciesLooks {
+    fn outfits(&mut self, species: &Species, generation: u64, textures: &SpeciesTextures) -> SpeciesLooks {
         let extension = SwayExtension {
             poses: self.shared.poses.clone(),
             beams: self.shared.beams.clone(),
             trees: self.shared.trees.clone(),
             frame: self.shared.frame.clone(),
-            leaf: LeafUniform::from(&species.foliage.response),
-            season: SeasonUniform::new(&species.phenology, species.foliage.leaf.colour),
+            leaf: LeafUniform::new(&species.foliage.response, matches!(species.growth, Growth::Gardner(_))),
+            season: SeasonUniform::new(&species.phenology, textures.foliage_colour()),
         };
-        let bark = self.bark_material(bark);
-        let foliage = self.foliage_material(species, leaf);
+        let bark = self.bark_material(&textures.bark);
+        let foliage = self.foliage_material(species, textures);
         SpeciesLooks {
             generation,
             bark: self.outfit(bark, extension.clone()),
@@ -224,18 +216,24 @@ impl Atelier<'_> {
     }
 
     fn bark_material(&mut self, textures: &BarkTextures) -> StandardMaterial {
+        let surface = self.images.add(image(&textures.surface, ImageAddressMode::Repeat));
         StandardMaterial {
             base_color_texture: Some(self.images.add(image(&textures.base_colour, ImageAddressMode::Repeat))),
             normal_map_texture: Some(self.images.add(image(&textures.normal, ImageAddressMode::Repeat))),
-            perceptual_roughness: 0.92,
+            occlusion_texture: Some(surface.clone()),
+            metallic_roughness_texture: Some(surface),
+            perceptual_roughness: 1.0,
             reflectance: 0.2,
             ..default()
         }
     }
 
-    fn foliage_material(&mut self, species: &Species, texture: &TextureData) -> StandardMaterial {
+    fn foliage_material(&mut self, species: &Species, textures: &SpeciesTextures) -> StandardMaterial {
+        let normals = textures.foliage_normal.as_ref();
+        let normals = normals.map(|normals| self.images.add(image(normals, ImageAddressMode::ClampToEdge)));
         StandardMaterial {
-            base_color_texture: Some(self.images.add(image(texture, ImageAddressMode::ClampToEdge))),
+            base_color_texture: Some(self.images.add(image(&textures.foliage, ImageAddressMode::ClampToEdge))),
+            normal_map_texture: normals,
             alpha_mode: AlphaMode::Mask(0.5),
             // Normals lean out of the crown for soft shading: flipping them for the back of a card would spoil that.
             double_sided: false,

@@ -61,11 +61,14 @@ pub struct LeafUniform {
     flutter_angle_rad: f32,
     flutter_frequency_hz: f32,
     period_s: f32,
-    padding: Vec2,
+    /// 1 where the foliage grows transparent towards its outline.
+    silhouette: f32,
+    padding: f32,
 }
 
-impl From<&LeafResponse> for LeafUniform {
-    fn from(leaf: &LeafResponse) -> Self {
+impl LeafUniform {
+    /// How leaves turn, and whether they are billows that grow transparent towards their outline (Gardner's).
+    pub fn new(leaf: &LeafResponse, silhouette: bool) -> Self {
         Self {
             turn: leaf.turn,
             onset_speed_m_s: leaf.onset_speed_m_s,
@@ -73,7 +76,8 @@ impl From<&LeafResponse> for LeafUniform {
             flutter_angle_rad: leaf.flutter_angle_rad,
             flutter_frequency_hz: leaf.flutter_frequency_hz,
             period_s: FLUTTER_PERIOD_S as f32,
-            padding: Vec2::ZERO,
+            silhouette: f32::from(u8::from(silhouette)),
+            padding: 0.0,
         }
     }
 }
@@ -158,8 +162,8 @@ impl MaterialExtension for SwayExtension {
         descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];
 
         // The second coordinates carry the season of a leaf to its fragments.
-        let own: &[&str] = if leaves { &["WINDWOOD_LEAVES", "VERTEX_UVS_B"] } else { &["VERTEX_TANGENTS"] };
-        for &shader_def in own.iter().chain(&["VERTEX_COLORS"]) {
+        let own: &[&str] = if leaves { &["WINDWOOD_LEAVES", "VERTEX_UVS_B"] } else { &[] };
+        for &shader_def in own.iter().chain(&["VERTEX_COLORS", "VERTEX_TANGENTS"]) {
             descriptor.vertex.shader_defs.push(shader_def.into());
             if let Some(fragment) = &mut descriptor.fragment {
                 fragment.shader_defs.push(shader_def.into());

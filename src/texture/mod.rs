@@ -1,6 +1,8 @@
-//! Pictures made on the CPU: the canvas on which bark, leaves and ground are painted, with mips.
+//! Pictures made on the processor: the canvas on which bark, leaves and ground are painted, with mips, and textures as
+//! functions of place, before they are pixels. Pure, and knowing no other room.
 
 pub mod canvas;
+pub mod fourier;
 
 pub(crate) use canvas::{Canvas, linear, mix};
 pub use canvas::{MASK_CUT_OFF, TextureData};

@@ -10,7 +10,9 @@
 use bevy::math::Vec3;
 
 use super::{
+    crown::{gardner, impressionist},
     foliage::{Card, Foliage},
+    growth::Growth,
     skeleton::{LeafCluster, Skeleton},
     species::Species,
 };
@@ -43,9 +45,18 @@ const CLUMP_ORDER: u8 = 2;
 /// Ambient light on the lower, inner side of a clump.
 const CLUMP_SHADE: f32 = 0.38;
 
-/// Cuts the cards of all sprays.
+/// The surface of the foliage: cards for sprays, or what a painted crown is made of.
 #[must_use]
 pub fn leaves(species: &Species, skeleton: &Skeleton) -> LeafVertices {
+    match &species.growth {
+        Growth::Impressionist(crown) => impressionist::leaves(crown, skeleton),
+        Growth::Gardner(crown) => gardner::leaves(crown, skeleton),
+        Growth::ReevesBlau(_) | Growth::Oak(_) | Growth::Fir(_) | Growth::AonoKunii(_) => cards(species, skeleton),
+    }
+}
+
+/// Cuts the cards of all sprays.
+fn cards(species: &Species, skeleton: &Skeleton) -> LeafVertices {
     let foliage = &species.foliage;
     let mut out = LeafVertices::with_capacity(skeleton.clusters.len() * foliage.card.vertices());
     let clumps = Clumps::of(skeleton);

@@ -5,11 +5,11 @@
 //! local to the tree, in metres, y up, the root at the origin.
 
 use bevy::math::Vec3;
-use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
+use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
 
 use super::{
     foliage::{self, Foliage},
-    growth::{envelope::Envelope, grower::Wood, pipes, reeves::Trunk},
+    growth::{Individual, age::Stage, envelope::Envelope, grower::Wood, pipes, reeves::Trunk},
     species::Species,
 };
 
@@ -127,14 +127,23 @@ const LONGEST_SPRAY_SHARE: f32 = 0.3;
 pub fn grow(species: &Species, age_years: f32, seed: u64) -> Skeleton {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let stage = species.age.stage(age_years);
-    let Wood { mut beams, envelope, trunk_radius_m } = species.growth.grow(&stage, &mut random);
-    let mut clusters = foliage::place(&young(&species.foliage, &beams), &beams, &envelope, &mut random);
+    let mut skeleton = match species.growth.grow(&stage, &mut random) {
+        Individual::Branches(wood) => leaf_out(species, &stage, wood, &mut random),
+        Individual::Painted(skeleton) => skeleton,
+    };
+    species.damage.befall(&mut skeleton.beams, &mut skeleton.clusters, &mut random);
+    skeleton
+}
+
+/// Hangs leaves on the branches, and lets both decide how thick the branches are.
+fn leaf_out(species: &Species, stage: &Stage, wood: Wood, random: &mut impl Rng) -> Skeleton {
+    let Wood { mut beams, envelope, trunk_radius_m } = wood;
+    let clusters = foliage::place(&young(&species.foliage, &beams), &beams, &envelope, random);
     if let Some(exponent) = species.growth.pipe_exponent() {
         pipes::assign_radii(&mut beams, &clusters, trunk_radius_m, exponent);
     }
-    species.damage.befall(&mut beams, &mut clusters, &mut random);
-    let grown = species.growth.trunk();
-    let trunk = grown.scaled(stage.height, trunk_radius_m / grown.radius_m);
+    let trunk = species.growth.trunk();
+    let trunk = trunk.scaled(stage.height, trunk_radius_m / trunk.radius_m);
     Skeleton { beams, clusters, envelope, trunk }
 }
 

@@ -7,6 +7,9 @@
 
 #ifdef WINDWOOD_LEAVES
 #import bevy_windwood::season
+#ifdef STANDARD_MATERIAL_NORMAL_MAP
+#import bevy_pbr::pbr_bindings::{normal_map_sampler, normal_map_texture}
+#endif
 #endif
 
 #ifdef VISIBILITY_RANGE_DITHER
@@ -21,6 +24,11 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     var pbr_input = pbr_input_from_standard_material(in, is_front);
     pbr_input.material.base_color = alpha_discard(pbr_input.material, pbr_input.material.base_color);
 #ifdef WINDWOOD_LEAVES
+#ifdef STANDARD_MATERIAL_NORMAL_MAP
+    // Veins and twigs let less light through.
+    let veil = textureSample(normal_map_texture, normal_map_sampler, in.uv).a;
+    pbr_input.material.diffuse_transmission *= veil;
+#endif
     let summer = pbr_input.material.base_color.rgb;
     pbr_input.material.base_color = vec4(season::recoloured(summer, in.uv_b.x, in.uv_b.y), pbr_input.material.base_color.a);
 #endif

@@ -13,10 +13,18 @@ struct LeafResponse {
     flutter_frequency_hz: f32,
     // Length after which the flutter repeats itself, s.
     period_s: f32,
-    padding: vec2<f32>,
+    // 1 where the foliage grows transparent towards its outline: Gardner's ellipsoids.
+    silhouette: f32,
+    padding: f32,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(104) var<uniform> response: LeafResponse;
+
+// What the mask's alpha is multiplied with: `silhouette_alpha` of `tree/crown/ellipsoids.rs`.
+fn silhouette_alpha(facing: f32) -> f32 {
+    let alpha = 1.0 / (2.0 - min(facing * facing, 1.0));
+    return select(1.0, alpha, response.silhouette > 0.5);
+}
 
 const TURN: f32 = 6.283185307179586;
 const FLUTTER_RATIOS: vec3<f32> = vec3(0.618, 1.0, 1.414);

@@ -3,6 +3,7 @@
 // `WINDWOOD_LEAVES` is defined for leaf cards, which have a main axis and an anchor, and not for wood.
 
 #import bevy_pbr::mesh_functions
+#import bevy_pbr::mesh_view_bindings::view
 #import bevy_pbr::view_transformations::position_world_to_clip
 #import bevy_windwood::beam
 
@@ -42,6 +43,14 @@ const TREE_BITS: u32 = 24u;
 
 fn tree_of(tag: u32) -> beam::TreeRow {
     return trees[tag & ((1u << TREE_BITS) - 1u)];
+}
+
+fn direction_to_eye(place: vec3<f32>) -> vec3<f32> {
+    // The last element is 1 where rays are parallel, as those of the sun are.
+    if view.clip_from_view[3].w == 1.0 {
+        return view.world_from_view[2].xyz;
+    }
+    return normalize(view.world_position - place);
 }
 
 #ifdef WINDWOOD_LEAVES
@@ -105,18 +114,21 @@ fn vertex(in: Vertex) -> VertexOutput {
 #ifdef NORMAL_PREPASS_OR_DEFERRED_PREPASS
     out.world_normal = normal;
 #ifdef VERTEX_TANGENTS
-    out.world_tangent = bark_tangent(in, tree, now, normal);
+    out.world_tangent = tangent(in, tree, now, normal);
 #endif
 #endif
 #else
     out.world_normal = normal;
 #ifdef VERTEX_TANGENTS
-    out.world_tangent = bark_tangent(in, tree, now, normal);
+    out.world_tangent = tangent(in, tree, now, normal);
 #endif
 #endif
 
 #ifdef VERTEX_COLORS
     out.color = vec4(shade(in, tag), 1.0);
+#ifdef WINDWOOD_LEAVES
+    out.color.a = leaf::silhouette_alpha(dot(normal, direction_to_eye(out.world_position.xyz)));
+#endif
 #endif
 
 // The main pass knows of the motion vectors, too, but does not write them.
@@ -139,14 +151,22 @@ fn vertex(in: Vertex) -> VertexOutput {
 }
 
 #ifdef VERTEX_TANGENTS
-// Bark is wound around its beam: u runs around, v along, so the tangent needs no vertex attribute.
-fn bark_tangent(in: Vertex, tree: beam::TreeRow, now: beam::Motion, normal: vec3<f32>) -> vec4<f32> {
+// The tangent needs no vertex attribute. Bark is wound around its beam: u runs around, v along. A spray's twig runs along
+// the diagonal of its texture, so u is halfway between the twig and its side.
+fn tangent(in: Vertex, tree: beam::TreeRow, now: beam::Motion, normal: vec3<f32>) -> vec4<f32> {
+#ifdef WINDWOOD_LEAVES
+    let along = beam::rotate(beam::then(now.rotation, tree.rotation), in.axis.xyz);
+    let across = normalize(cross(along, normal) + 1e-6 * vec3(0.36, 0.48, 0.8));
+    let diagonal = along + across;
+    return vec4(normalize(diagonal - normal * dot(diagonal, normal)), 1.0);
+#else
     let row = beams[tree.first_beam + u32(in.sway.x + 0.5)];
     let along = beam::rotate(beam::then(now.rotation, tree.rotation), row.direction);
     let around = cross(along, normal);
     let fallback = cross(along, vec3(0.36, 0.48, 0.8));
     let flat = dot(around, around) < 1e-6;
     return vec4(normalize(select(around, fallback, flat)), 1.0);
+#endif
 }
 #endif
 
