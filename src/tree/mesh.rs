@@ -2,7 +2,7 @@
 //!
 //! Every vertex is bound to one beam at one place on it and moves with that cross-section. No gap opens when the
 //! beams bend, for three reasons. A branch's beams share the ring at their joint: the end of one and the start of the
-//! next move alike. A branch's first ring stands on its parent, a little below the bark, and moves with it (see `joint.rs`); a thin or steep branch starts inside its parent instead. The trunk starts below the ground.
+//! next move alike. A branch's first ring stands on its parent, a little below the bark, and moves with it (see `joint`); a thin or steep branch starts inside its parent instead. The trunk starts below the ground.
 
 use bevy::math::Vec3;
 
@@ -55,7 +55,7 @@ pub fn wood(species: &Species, skeleton: &Skeleton) -> WoodVertices {
     for first in (0..skeleton.beams.len()).filter(|&index| !continues[index]) {
         let chain: Vec<usize> =
             std::iter::successors(Some(first), |&beam| continuations[beam].map(|next| next as usize)).collect();
-        let branch = Branch { skeleton, chain: &chain };
+        let branch = Branch { skeleton, chain: &chain, continuations: &continuations };
         let base_radius_m = skeleton.beams[first].base_radius_m;
         let mut tube = Tube::new(base_radius_m, species.wood.bark.tile_m);
         branch.rings(&skeleton.trunk, |ring| tube.push(ring));
@@ -67,6 +67,7 @@ pub fn wood(species: &Species, skeleton: &Skeleton) -> WoodVertices {
 struct Branch<'a> {
     skeleton: &'a Skeleton,
     chain: &'a [usize],
+    continuations: &'a [Option<u32>],
 }
 
 impl Branch<'_> {
@@ -123,7 +124,7 @@ impl Branch<'_> {
     fn joint_rings(&self, parent: usize, push: &mut impl FnMut(Ring)) -> f32 {
         let index = self.chain[0];
         let beam = &self.skeleton.beams[index];
-        let limb = limb(&self.skeleton.beams[parent], parent, beam.attach);
+        let limb = limb(&self.skeleton.beams[parent], parent, beam.attach, self.continuations[parent].is_none());
         let mut root = ring(beam, index, 0.0);
         let slant = root.tangent.cross(limb.axis).length();
         let room_m = 0.92 * limb.radius_m - beam.base_radius_m;
@@ -181,22 +182,33 @@ fn ring(beam: &SkeletonBeam, index: usize, s: f32) -> Ring {
 }
 
 /// A beam about a place on it, as it is drawn: between its rings it is straight.
-fn limb(beam: &SkeletonBeam, index: usize, at: f32) -> Limb {
+fn limb(beam: &SkeletonBeam, index: usize, at: f32, ends: bool) -> Limb {
     let steps = steps(beam) as f32;
     let low = (at * steps).floor().min(steps - 1.0);
     let (from, to) = (beam.path(low / steps), beam.path((low + 1.0) / steps));
+    // The first beam of a branch has other rings near its root: there the parabola's sag over a chord is unsure.
+    let unsure_m = if beam.attach < 1.0 { beam.bow.length() / (steps * steps) } else { 0.0 };
+    let inscribed = FOOT_DEPTH * inradius(beam.base_radius_m);
+    // A pointed tip runs out over the whole last stretch.
+    let to_radius_m = match ends && low + 1.0 >= steps && beam.tip_radius_m < POINTED_TIP_RADIUS_M {
+        true => 0.0,
+        false => inscribed * beam.radius_m((low + 1.0) / steps),
+    };
+    let from_radius_m = inscribed * beam.radius_m(low / steps);
+    let radius_m = from_radius_m + (to_radius_m - from_radius_m) * (at * steps - low);
     Limb {
         point: from.lerp(to, at * steps - low),
         axis: (to - from).try_normalize().unwrap_or(beam.direction),
-        radius_m: FOOT_DEPTH * beam.radius_m(at) * inradius(beam.base_radius_m),
+        radius_m: (radius_m - unsure_m).max(0.3 * radius_m),
+        taper: (from_radius_m - to_radius_m) * steps / beam.length_m,
         beam: index as u32,
         at,
         length_m: beam.length_m,
     }
 }
 
-/// The foot of a fillet stands at this share of the parent's inscribed radius, so that taper shows no gap.
-const FOOT_DEPTH: f32 = 0.97;
+/// The foot of a fillet stands at this share of the parent's inscribed radius, so that kinks of a branch show no gap.
+const FOOT_DEPTH: f32 = 0.9;
 
 /// Rings a beam needs: enough that the polygon keeps within a third of its radius (and 6 cm for the thinnest) of the
 /// bowed path, and that long beams bend smoothly.

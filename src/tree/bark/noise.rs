@@ -68,50 +68,50 @@ pub(super) struct Cell {
     pub hash: u32,
 }
 
-/// A jittered grid of cells.
+/// A jittered grid of cells, drawn up beforehand with a rim that repeats the far side.
 pub(super) struct Cells {
-    columns: i32,
-    rows: i32,
-    salt: u32,
-    jitter: f32,
+    size: Vec2,
+    stride: usize,
+    /// Centre within its own square, and random bits.
+    centres: Vec<(Vec2, u32)>,
 }
 
 impl Cells {
+    /// `jitter` 0 sets the centres on a grid, 1 anywhere in their squares.
     pub(super) fn new(columns: u32, rows: u32, jitter: f32, salt: u32) -> Self {
-        Self { columns: columns.max(1) as i32, rows: rows.max(1) as i32, salt, jitter }
+        let (columns, rows) = (columns.max(1) as i32, rows.max(1) as i32);
+        let centre = |x: i32, y: i32| {
+            let hash = hash(x.rem_euclid(columns), y.rem_euclid(rows), salt);
+            (Vec2::new(unit(hash), unit(hash >> 16)) * jitter + 0.5 * (1.0 - jitter), hash)
+        };
+        let centres = (-1..=rows).flat_map(|y| (-1..=columns).map(move |x| (x, y))).map(|(x, y)| centre(x, y));
+        Self { size: Vec2::new(columns as f32, rows as f32), stride: columns as usize + 2, centres: centres.collect() }
     }
 
     /// The cell at `uv` (any value), displaced by `warp` in cells.
     pub(super) fn at(&self, uv: Vec2, warp: Vec2) -> Cell {
-        let point = uv * Vec2::new(self.columns as f32, self.rows as f32) + warp;
+        let point = uv * self.size + warp;
         let home = point.floor();
-        let (home_x, home_y) = ((home.x as i32).rem_euclid(self.columns), (home.y as i32).rem_euclid(self.rows));
         let within = point - home;
+        // A remainder may round up to the divisor itself.
+        let wrapped = home.rem_euclid(self.size).min(self.size - 1.0);
+        let first = wrapped.y as usize * self.stride + wrapped.x as usize;
         let (mut nearest, mut second) = (f32::INFINITY, f32::INFINITY);
         let mut cell = Cell { edge: 0.0, from: Vec2::ZERO, hash: 0 };
-        for step in 0..9 {
-            let (dx, dy) = (step % 3 - 1, step / 3 - 1);
-            let hash = hash(wrapped(home_x + dx, self.columns), wrapped(home_y + dy, self.rows), self.salt);
-            let jitter = Vec2::new(unit(hash), unit(hash >> 16)) * self.jitter + 0.5 * (1.0 - self.jitter);
-            let from = within - Vec2::new(dx as f32, dy as f32) - jitter;
-            let distance = from.length_squared();
-            if distance < nearest {
-                (second, nearest) = (nearest, distance);
-                (cell.from, cell.hash) = (from, hash);
-            } else {
-                second = second.min(distance);
+        for row in 0..3 {
+            let start = first + row * self.stride;
+            for (column, &(centre, hash)) in self.centres[start..start + 3].iter().enumerate() {
+                let from = within - centre - Vec2::new(column as f32 - 1.0, row as f32 - 1.0);
+                let distance = from.length_squared();
+                if distance < nearest {
+                    (second, nearest) = (nearest, distance);
+                    (cell.from, cell.hash) = (from, hash);
+                } else {
+                    second = second.min(distance);
+                }
             }
         }
         cell.edge = second.sqrt() - nearest.sqrt();
         cell
-    }
-}
-
-/// The lattice point past the last is the first again, and the one before the first the last.
-fn wrapped(index: i32, count: i32) -> i32 {
-    match index {
-        _ if index >= count => index - count,
-        _ if index < 0 => index + count,
-        _ => index,
     }
 }

@@ -1,7 +1,7 @@
 //! Leaves: how they are shaped, veined, coloured and set on their twig, and the picture of a spray of them.
 //!
-//! [`outline`] draws the margin of one leaf, [`venation`] its veins, [`blade`] turns both into a field that can be
-//! stamped at any size, [`spray`] sets leaves on a twig, and [`texture`] paints them.
+//! [`outline`] draws the margin of one leaf, `venation` its veins, `blade` turns both into a field that can be
+//! stamped at any size, `spray` sets leaves on a twig, and [`texture`] paints them.
 
 pub(super) mod blade;
 pub mod outline;

@@ -157,9 +157,9 @@ impl Painter {
         let kept = below[3] * (1.0 - paint.coverage);
         let alpha = kept + paint.coverage;
         if alpha > 0.0 {
-            for channel in 0..3 {
-                let shaded = below[channel] * (1.0 - paint.shade);
-                below[channel] = (kept * shaded + paint.coverage * paint.colour[channel]) / alpha;
+            for (channel, &laid) in below[..3].iter_mut().zip(&paint.colour) {
+                let shaded = *channel * (1.0 - paint.shade);
+                *channel = (kept * shaded + paint.coverage * laid) / alpha;
             }
             below[3] = alpha;
         }

@@ -21,8 +21,10 @@ pub(super) struct Limb {
     pub point: Vec3,
     /// Unit vector along it.
     pub axis: Vec3,
-    /// Radius of the circle inscribed to its cross-section, m.
+    /// Radius of the circle inscribed to its cross-section at `point`, m.
     pub radius_m: f32,
+    /// How fast that radius shrinks along the axis, m/m.
+    pub taper: f32,
     /// Its beam, the place of `point` on it, and its length.
     pub beam: u32,
     pub at: f32,
@@ -33,10 +35,21 @@ impl Limb {
     /// How far along unit `direction` from `from` the surface is left, m; where the line misses the limb, how far it
     /// is to where it comes nearest.
     pub(super) fn exit_m(&self, from: Vec3, direction: Vec3) -> f32 {
+        // A limb is a slender cone: its radius where the line leaves it is found by repetition.
+        let mut exit_m = self.exit_of_cylinder_m(from, direction, self.radius_m);
+        for _ in 0..2 {
+            let beyond_m = (from + direction * exit_m - self.point).dot(self.axis);
+            let radius_m = (self.radius_m - self.taper * beyond_m).clamp(0.5 * self.radius_m, 2.0 * self.radius_m);
+            exit_m = self.exit_of_cylinder_m(from, direction, radius_m);
+        }
+        exit_m
+    }
+
+    fn exit_of_cylinder_m(&self, from: Vec3, direction: Vec3, radius_m: f32) -> f32 {
         let a = direction.reject_from_normalized(self.axis);
         let b = (from - self.point).reject_from_normalized(self.axis);
         let (across, half) = (a.length_squared().max(1e-6), a.dot(b));
-        let discriminant = half * half - across * (b.length_squared() - self.radius_m * self.radius_m);
+        let discriminant = half * half - across * (b.length_squared() - radius_m * radius_m);
         (discriminant.max(0.0).sqrt() - half) / across
     }
 
@@ -93,3 +106,6 @@ impl Fillet {
         FilletPoint { position, normal, along_m, bound }
     }
 }
+
+#[cfg(test)]
+mod tests;
