@@ -1,8 +1,8 @@
 //! Fourier textures: a few waves whose phases disturb one another, which look like leaves, rock, bark or pasture.
 //!
-//! Gardner ("Simulation of natural scenes using textured quadric surfaces", SIGGRAPH 1984; "Visual simulation of clouds",
-//! 1985) multiplies two short series, Zaharia ("Procedural modeling of natural phenomena", section 2.4) adds them. With
-//! terms `i = 0, 1, ...`, an offset `A` and a coupling `k` of the phases,
+//! Gardner ("Simulation of natural scenes using textured quadric surfaces", SIGGRAPH 1984; "Visual simulation of
+//! clouds", 1985) multiplies two short series, Zaharia ("Procedural modeling of natural phenomena", section 2.4) adds
+//! them. With terms `i = 0, 1, ...`, an offset `A` and a coupling `k` of the phases,
 //!
 //! ```text
 //! X(x, y, z) = sum c_i (cos(w_i x + p_i + k pi/2 sin(w_(i-1) y) + k pi sin(w_i z / 2)) + A)
@@ -11,13 +11,14 @@
 //! w_(i+1) = 2 w_i,   c_(i+1) = c_i / sqrt 2,   w_0 = 12,  c_0 = 1.76,  A = 1
 //! ```
 //!
-//! Zaharia's print has `w_(i+1) = w_i` and `c_(i+1) = c_i sqrt 2`, which neither is a Fourier series nor stays bounded: this
-//! is Gardner's recursion. The first term has none below it and is coupled to `w_0`. `p_i` and `q_i` come from the seed.
+//! Zaharia's print has `w_(i+1) = w_i` and `c_(i+1) = c_i sqrt 2`, which neither is a Fourier series nor stays bounded:
+//! this is Gardner's recursion. The first term has none below it and is coupled to `w_0`. `p_i` and `q_i` come from the
+//! seed.
 //!
-//! Every cosine lies in -1..1, so with `C = sum c_i` both series lie in `C (A - 1) ..= C (A + 1)`, which bounds `G`; the
-//! value is `G` brought from these bounds to 0..1. The sum's value does not depend on `A` nor `c_0`; the product's does: the
-//! smaller `A`, the darker the ground and the fewer and brighter its spots. Thresholds are better chosen by the share of the
-//! texture that shall lie above them: see [`FourierWaves::threshold_above`].
+//! Every cosine lies in -1..1, so with `C = sum c_i` both series lie in `C (A - 1) ..= C (A + 1)`, which bounds `G`;
+//! the value is `G` brought from these bounds to 0..1. The sum's value does not depend on `A` nor `c_0`; the product's
+//! does: the smaller `A`, the darker the ground and the fewer and brighter its spots. Thresholds are better chosen by
+//! the share of the texture that shall lie above them: see [`FourierWaves::threshold_above`].
 
 use std::f32::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI, TAU};
 
@@ -167,8 +168,8 @@ pub struct FourierWaves {
 }
 
 impl FourierWaves {
-    /// Value at a place in the plane, 0 to 1. Places should be within some thousand units, beyond which single precision
-    /// blurs the highest frequencies.
+    /// Value at a place in the plane, 0 to 1. Places should be within some thousand units, beyond which single
+    /// precision blurs the highest frequencies.
     #[must_use]
     pub fn at(&self, place: Vec2) -> f32 {
         self.at_solid(place.extend(0.0))
@@ -290,11 +291,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_is_the_sum_of_its_waves(settings in settings(), x in -1.0_f32..1.0, y in -1.0_f32..1.0, z in -1.0_f32..1.0) {
+        fn it_is_the_sum_of_its_waves(
+            settings in settings(), x in -1.0_f32..1.0, y in -1.0_f32..1.0, z in -1.0_f32..1.0,
+        ) {
             let waves = settings.waves().unwrap();
             let value = waves.at_solid(Vec3::new(x, y, z));
             let expected = slow(&settings, &waves, f64::from(x), f64::from(y), f64::from(z));
-            // The highest phase here is some 5000 rad, which single precision holds to 2.5e-4 (5e-4 with its couplings).
+            // The highest phase here is some 5000 rad, which single precision holds to 2.5e-4 (5e-4 with its
+            // couplings).
             prop_assert!((0.0..=1.0).contains(&value));
             prop_assert!((f64::from(value) - expected).abs() < 1e-3, "{value} against {expected}");
         }

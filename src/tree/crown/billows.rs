@@ -1,7 +1,7 @@
 //! The 3-D texture of an impressionist crown: where it billows out, and where it falls back into gaps.
 //!
-//! Starling & Ashdown take one value of Perlin's noise (1985) for each polygon; it displaces, darkens and removes. Here the
-//! value is its rank among values all over the crown, so that it is spread evenly over 0 to 1 whatever the noise
+//! Starling & Ashdown take one value of Perlin's noise (1985) for each polygon; it displaces, darkens and removes. Here
+//! the value is its rank among values all over the crown, so that it is spread evenly over 0 to 1 whatever the noise
 //! does: a threshold of 0.7 then keeps seven tenths of the polygons, neither more nor less. A conifer's boughs stand in
 //! tiers: a saw-tooth over the height, deep above each tier's rim, stronger than the noise.
 
@@ -12,8 +12,8 @@ use super::profile::Profile;
 
 /// Weight and scale of the second octave of the noise.
 const FINE: [f64; 2] = [0.45, 2.3];
-/// Conifers: tiers per billow across the crown and per diameter of its height, weight of the noise against a tier, and how
-/// much it tilts a tier's rim.
+/// Conifers: tiers per billow across the crown and per diameter of its height, weight of the noise against a tier, and
+/// how much it tilts a tier's rim.
 const TIERS_PER_BILLOW: f32 = 1.3;
 const TIER_NOISE: f32 = 0.55;
 const TIER_TILT: f32 = 0.35;

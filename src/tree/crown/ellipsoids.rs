@@ -1,7 +1,7 @@
 //! Surfaces and texture of Gardner's ellipsoids; see [`gardner`](super::gardner).
 //!
-//! A sphere is charted by the octahedron that is unfolded onto the unit square, its upper half the diamond in the middle,
-//! its lower half the four corners: with `d / (|x| + |y| + |z|) = (x, y, z)`,
+//! A sphere is charted by the octahedron that is unfolded onto the unit square, its upper half the diamond in the
+//! middle, its lower half the four corners: with `d / (|x| + |y| + |z|) = (x, y, z)`,
 //!
 //! ```text
 //! (u, v) = (x, z)                                      for y >= 0

@@ -1,15 +1,16 @@
 //! Impressionist trees after Gardner, "Simulation of natural scenes using textured quadric surfaces" (SIGGRAPH 1984).
 //!
-//! A crown is a cluster of ellipsoids. A solid Fourier texture ([`fourier`](crate::texture::fourier)) makes each translucent where its value is
-//! below a threshold, and the threshold rises towards the outline, so that a smooth solid ends in leaves. With `u = |n . v|`
-//! the cosine between the surface and the eye, Gardner's quadric is `u^2` in the image of a sphere, 1 in its middle and 0 on
-//! its outline, and
+//! A crown is a cluster of ellipsoids. A solid Fourier texture ([`fourier`](crate::texture::fourier)) makes each
+//! translucent where its value is below a threshold, and the threshold rises towards the outline, so that a smooth
+//! solid ends in leaves. With `u = |n . v|` the cosine between the surface and the eye, Gardner's quadric is `u^2` in
+//! the image of a sphere, 1 in its middle and 0 on its outline, and
 //!
 //! ```text
 //! threshold(u) = t_middle + (t_outline - t_middle) (1 - u^2),     drawn where F > threshold(u)
 //! ```
 //!
-//! A renderer with one fixed cut-off at 1/2 does exactly that if the texture's alpha is `a(F)` and is multiplied by `w(u)`:
+//! A renderer with one fixed cut-off at 1/2 does exactly that if the texture's alpha is `a(F)` and is multiplied by
+//! `w(u)`:
 //!
 //! ```text
 //! a(F) = 1/2 + (F - t_middle) / (2 (t_outline - t_middle))   within 0..1
@@ -19,8 +20,12 @@
 //! for `a w > 1/2` is `F > threshold(u)`. [`silhouette_alpha`](super::silhouette_alpha) is `w`. The two thresholds are
 //! chosen by the shares of the surface that they leave: `cover` and `outline_cover`.
 //!
+//! Ellipsoids are carried by their limbs and do not flutter: their species wants a leaf response with `turn` and
+//! `flutter_angle_rad` 0.
+//!
 //! ```ron
-//! Gardner(height_m: 12.0, diameter_m: 9.0, crown_size: 0.8, ellipsoids: 14, size: 0.42, cover: 0.85, outline_cover: 0.08)
+//! Gardner(height_m: 12.0, diameter_m: 9.0, crown_size: 0.8, ellipsoids: 14, size: 0.42, size_spread: 0.3,
+//!     cover: 0.85, outline_cover: 0.08)
 //! ```
 
 use bevy::{math::Vec3, reflect::Reflect};
@@ -62,7 +67,8 @@ pub struct GardnerCrown {
     pub size: f32,
     /// Random part of that, 0 to 0.9.
     pub size_spread: f32,
-    /// How far from the crown's middle the ellipsoids sit, as a share of the room there is: 0 all in the middle, 1 all at the rim.
+    /// How far from the crown's middle the ellipsoids sit, as a share of the room there is: 0 all in the middle, 1 all
+    /// at the rim.
     pub spread: f32,
     /// Solid texture that cuts and dapples them; its unit of place is an ellipsoid's semi-axis.
     pub texture: FourierTexture,
@@ -170,9 +176,9 @@ const PIPE_EXPONENT: f32 = 2.2;
 /// The golden angle, rad.
 const GOLDEN_ANGLE_RAD: f32 = 2.399_963;
 
-/// Grows one individual, `scale` times as large as the settings say. Clusters are ellipsoids: `anchor` is on the underside towards the limb,
-/// `axis` the limb's direction, `size_m` the horizontal diameter, and the middle lies half a size along the axis, at the
-/// limb's tip.
+/// Grows one individual, `scale` times as large as the settings say. Clusters are ellipsoids: `anchor` is on the
+/// underside towards the limb, `axis` the limb's direction, `size_m` the horizontal diameter, and the middle lies half
+/// a size along the axis, at the limb's tip.
 #[must_use]
 pub fn grow(crown: &GardnerCrown, scale: f32, random: &mut impl Rng) -> Skeleton {
     let crown = &crown.scaled(scale);
@@ -214,8 +220,9 @@ pub fn grow(crown: &GardnerCrown, scale: f32, random: &mut impl Rng) -> Skeleton
     Skeleton { beams, clusters, envelope, trunk: crown.trunk() }
 }
 
-/// The ellipsoids of a skeleton from [`grow`], each bound to the tip of its limb. Normals are those of the ellipsoids, for
-/// the renderer's `u = |n . v|`; texture coordinates are an octahedral chart, which has no pole (Praun & Hoppe 2003).
+/// The ellipsoids of a skeleton from [`grow`], each bound to the tip of its limb. Normals are those of the ellipsoids,
+/// for the renderer's `u = |n . v|`; texture coordinates are an octahedral chart, which has no pole (Praun & Hoppe
+/// 2003).
 #[must_use]
 pub fn leaves(crown: &GardnerCrown, skeleton: &Skeleton) -> LeafVertices {
     ellipsoids::leaves(crown, skeleton)

@@ -1,6 +1,7 @@
 //! Impressionist crowns after Starling & Ashdown, "Impressionistic techniques for rendering woodland scenes".
 //!
-//! A crown is some hundred triangles to a few thousand, each standing for a group of leaves, on a partial ellipsoid roughened by a 3-D texture:
+//! A crown is some hundred triangles to a few thousand, each standing for a group of leaves, on a partial ellipsoid
+//! roughened by a 3-D texture:
 //!
 //! ```text
 //! anchor      = surface + roughness T (core - surface)        T the texture's value at the surface, 0..1
@@ -10,9 +11,10 @@
 //! drawn where   T < 1 - gaps
 //! ```
 //!
-//! The paper draws where `T` is below a threshold and says that gaps grow with the threshold; here the slider does what it
-//! says, and because `T` is evenly spread, `gaps` is the share of polygons left out. Its menu names TIP POINT, CURVE and
-//! DISTORTION without a formula: here tip point and curve shape the outline, and the distortion is the number of billows across the crown, to which roughness and gaps answer.
+//! The paper draws where `T` is below a threshold and says that gaps grow with the threshold; here the slider does what
+//! it says, and because `T` is evenly spread, `gaps` is the share of polygons left out. Its menu names TIP POINT, CURVE
+//! and DISTORTION without a formula: here tip point and curve shape the outline, and the distortion is the number of
+//! billows across the crown, to which roughness and gaps answer.
 //!
 //! Polygons come in a low-discrepancy order (Roberts' R2 sequence), so that the first `n` of a crown are a crown of `n`
 //! polygons: with distance, fewer are drawn. None leaves the outline: one that would is moved inwards, or made smaller.
@@ -75,7 +77,8 @@ pub struct ImpressionistCrown {
     pub diameter_m: f32,
     /// Height of the crown as a share of the tree's, 0.1 to 1.
     pub crown_size: f32,
-    /// Height of the widest point as a share of the crown's, 0 to 0.9: below it the ellipsoid is cut where the crown ends.
+    /// Height of the widest point as a share of the crown's, 0 to 0.9: below it the ellipsoid is cut where the crown
+    /// ends.
     pub widest_at: f32,
     /// How much the crown is drawn out to a point: 0 round to 1, a cone.
     pub tip_point: f32,
@@ -246,8 +249,8 @@ impl ImpressionistCrown {
         }
     }
 
-    /// Number of polygons, before gaps, that are drawn from a distance in m: all near by, then as many as keep their number for each
-    /// metre of the crown's width on the screen.
+    /// Number of polygons, before gaps, that are drawn from a distance in m: all near by, then as many as keep their
+    /// number for each metre of the crown's width on the screen.
     #[must_use]
     pub fn polygons_at(&self, distance_m: f32) -> usize {
         let share = (self.full_detail_m / distance_m.max(self.full_detail_m)).clamp(0.0, 1.0);
@@ -261,8 +264,8 @@ impl ImpressionistCrown {
         (self.polygons.max(1) as f32 / self.polygons_at(distance_m) as f32).sqrt()
     }
 
-    /// Light of polygons at a depth (0 outermost to 1) as a share of the outermost's, 0 to 1. Brightness runs linearly with
-    /// depth as a value, which is sRGB; light is linear.
+    /// Light of polygons at a depth (0 outermost to 1) as a share of the outermost's, 0 to 1. Brightness runs linearly
+    /// with depth as a value, which is sRGB; light is linear.
     #[must_use]
     pub fn light(&self, depth: f32) -> f32 {
         let value = self.greatest_brightness + depth * (self.least_brightness - self.greatest_brightness);
@@ -296,16 +299,17 @@ impl ImpressionistCrown {
     }
 }
 
-/// Grows one individual, `scale` (above 0) times as large as the settings say. Clusters are polygons: `anchor` the corner that lies on the
-/// roughened surface, `axis` from there to the middle of the opposite side, `size_m` its length, `depth` the texture's
-/// value, 0 outermost to 1.
+/// Grows one individual, `scale` (above 0) times as large as the settings say. Clusters are polygons: `anchor` the
+/// corner that lies on the roughened surface, `axis` from there to the middle of the opposite side, `size_m` its
+/// length, `depth` the texture's value, 0 outermost to 1.
 #[must_use]
 pub fn grow(crown: &ImpressionistCrown, scale: f32, random: &mut impl Rng) -> Skeleton {
     polygons::grow(&crown.scaled(scale), random)
 }
 
-/// The polygons of a skeleton from [`grow`], three vertices each, flat shaded (towards the way out in winter, when they are
-/// twigs); ambient light is [`ImpressionistCrown::light`]. Texture coordinates: the anchor (0.5, 1), the others (0, 0) and (1, 0).
+/// The polygons of a skeleton from [`grow`], three vertices each, flat shaded (towards the way out in winter, when they
+/// are twigs); ambient light is [`ImpressionistCrown::light`]. Texture coordinates: the anchor (0.5, 1), the others (0,
+/// 0) and (1, 0).
 #[must_use]
 pub fn leaves(crown: &ImpressionistCrown, skeleton: &Skeleton) -> LeafVertices {
     polygons::leaves(crown, skeleton, skeleton.clusters.len(), 1.0)

@@ -1,7 +1,8 @@
 //! The picture on a polygon of an impressionist crown.
 //!
-//! The paper's triangles are plain. Here a Fourier texture may eat into their edges: with `b` the least barycentric coordinate
-//! (0 at an edge, 1/3 in the middle) and `F` the rank of the texture's value among all (0..1), a texel is drawn where
+//! The paper's triangles are plain. Here a Fourier texture may eat into their edges: with `b` the least barycentric
+//! coordinate (0 at an edge, 1/3 in the middle) and `F` the rank of the texture's value among all (0..1), a texel is
+//! drawn where
 //!
 //! ```text
 //! F > raggedness (1 - 3 b)^2

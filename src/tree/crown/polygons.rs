@@ -36,7 +36,8 @@ const RANKED_PLACES: usize = 2048;
 const PIPE_EXPONENT: f32 = 2.2;
 /// How much of a polygon's tint is its own, the rest its depth.
 const OWN_TINT: f32 = 0.5;
-/// Steps of the way to the core in which a polygon that leaves the outline is moved, and how much smaller it then becomes.
+/// Steps of the way to the core in which a polygon that leaves the outline is moved, and how much smaller it then
+/// becomes.
 const INWARD_STEPS: u32 = 12;
 const SHRINKING: f32 = 0.7;
 /// How often it may shrink, which takes it to a millionth.
@@ -171,8 +172,8 @@ impl Painter<'_> {
         Some(LeafCluster { beam, at, anchor, axis, normal, size_m, phase: lot.phase, depth, tint })
     }
 
-    /// The point of the outline that belongs to a place of the sequence; in winter a point of a branch inside the outline,
-    /// with that branch and the place on it. All branches bear as many twigs.
+    /// The point of the outline that belongs to a place of the sequence; in winter a point of a branch inside the
+    /// outline, with that branch and the place on it. All branches bear as many twigs.
     fn place(&self, even: [f32; 2]) -> (Option<(u32, f32)>, Vec3) {
         let carrier = self.carriers.get((even[0] * self.carriers.len() as f32) as usize);
         match carrier {
@@ -189,8 +190,8 @@ impl Painter<'_> {
         }
     }
 
-    /// Unit normal and axis of a polygon. The axis is the steepest line in its plane, turned by the polygon's spin: up in
-    /// general; a bough's anchor is its tip, so that it too lies below; twigs lean the other way and rise outwards.
+    /// Unit normal and axis of a polygon. The axis is the steepest line in its plane, turned by the polygon's spin: up
+    /// in general; a bough's anchor is its tip, so that it too lies below; twigs lean the other way and rise outwards.
     fn lie(&self, inclination_rad: f32, heading_rad: f32, spin: f32) -> (Vec3, Vec3) {
         let winter = self.crown.form == CrownForm::Winter;
         let lean = if winter { -inclination_rad.sin() } else { inclination_rad.sin() };
@@ -201,8 +202,8 @@ impl Painter<'_> {
         (normal, Quat::from_axis_angle(normal, spin_rad) * uphill)
     }
 
-    /// Moves a polygon inwards until it is just inside the outline, and makes it smaller where it is too large for that.
-    /// Twigs stay on their branch.
+    /// Moves a polygon inwards until it is just inside the outline, and makes it smaller where it is too large for
+    /// that. Twigs stay on their branch.
     fn settle(&self, anchor: Vec3, core: Vec3, axis: Vec3, normal: Vec3, size_m: f32) -> (Vec3, f32) {
         let steps = if self.crown.form == CrownForm::Winter { 0 } else { INWARD_STEPS };
         let mut size_m = size_m;

@@ -1,15 +1,15 @@
 //! The outline of an impressionist crown: a partial ellipsoid, drawn out to a tip.
 //!
 //! With the radius `R` at the widest height, `t` the distance from there as a share of the semi-axis (above: up to the
-//! top; below: the same semi-axis or the distance to the base, whichever is longer, so that the ellipsoid is cut), the curve
-//! `p` and the tip point `q`,
+//! top; below: the same semi-axis or the distance to the base, whichever is longer, so that the ellipsoid is cut), the
+//! curve `p` and the tip point `q`,
 //!
 //! ```text
 //! r(t) / R = (1 - q) (1 - |t|^p)^(1/p) + q (1 - t)   above,     (1 - |t|^p)^(1/p)   below
 //! ```
 //!
-//! `p = 2`, `q = 0` is the paper's ellipsoid, `q = 1` a cone. For `p >= 1` the solid is convex, so that moving towards its
-//! axis never leaves it.
+//! `p = 2`, `q = 0` is the paper's ellipsoid, `q = 1` a cone. For `p >= 1` the solid is convex, so that moving towards
+//! its axis never leaves it.
 
 use bevy::math::Vec3;
 
@@ -61,8 +61,8 @@ impl Profile {
         (point.y - nearest_m).abs() <= slack_m && point.x.hypot(point.z) <= self.girth_m(nearest_m) + slack_m
     }
 
-    /// The point of the surface at a polar angle (as a share, 0 at the tip to 1 at the base) and an azimuth. Equal shares are
-    /// equal angles: points crowd at the tip, as the paper's do.
+    /// The point of the surface at a polar angle (as a share, 0 at the tip to 1 at the base) and an azimuth. Equal
+    /// shares are equal angles: points crowd at the tip, as the paper's do.
     pub(super) fn surface(&self, polar_share: f32, azimuth_rad: f32) -> Vec3 {
         let below_m = self.semi_axis_m(false);
         let last_rad =
@@ -74,8 +74,8 @@ impl Profile {
         Vec3::new(radius_m * azimuth_rad.cos(), height_m, radius_m * azimuth_rad.sin())
     }
 
-    /// The point of the axis towards which the surface is displaced, always inside: half-way between the point's own height
-    /// and the widest in a round crown, level with the point in a pointed one.
+    /// The point of the axis towards which the surface is displaced, always inside: half-way between the point's own
+    /// height and the widest in a round crown, level with the point in a pointed one.
     pub(super) fn core(&self, point: Vec3) -> Vec3 {
         let own_m = point.y.clamp(self.base_m, self.top_m);
         let height_m = own_m + 0.5 * (1.0 - self.tip_point) * (self.widest_m() - own_m);

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 use super::impressionist::ImpressionistCrown;
 use crate::tree::leaf_mesh::LeafVertices;
 
-/// How the polygons of a crown lie. All is measured on the corners that are drawn, not taken from the settings; zeros for
-/// a crown without polygons.
+/// How the polygons of a crown lie. All is measured on the corners that are drawn, not taken from the settings; zeros
+/// for a crown without polygons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CrownStatistics {
     /// Polygons.
