@@ -8,6 +8,7 @@ mod beams;
 mod parity;
 mod report;
 mod spectrum;
+mod trees;
 
 use clap::{Parser, ValueEnum};
 use std::{path::PathBuf, process::ExitCode};
@@ -23,6 +24,8 @@ enum Topic {
     Beams,
     /// The posed vertices of the graphics processor against the processor's.
     Parity,
+    /// The trees against the papers' tables, their own settings, and real trees.
+    Trees,
 }
 
 #[derive(Parser)]
@@ -42,6 +45,7 @@ fn main() -> ExitCode {
         Topic::Basis => basis::run(),
         Topic::Beams => beams::run(),
         Topic::Parity => parity::run(),
+        Topic::Trees => trees::run(),
     };
     report.print();
     if let Some(path) = options.json {

@@ -27,6 +27,9 @@ pub enum BarkPattern {
     Peeling,
     /// Smooth with low wrinkles and spots of lichen: beech. `plates_along` counts the wrinkles by three.
     Smooth,
+    /// Gardner's Fourier texture, as Zaharia colours his trunks: `plates_around` and `plates_along` are the periods of its
+    /// first waves in the tile.
+    Fourier,
 }
 
 /// What the bark of a species looks like.

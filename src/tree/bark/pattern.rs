@@ -2,6 +2,8 @@
 
 use bevy::math::Vec2;
 
+use crate::texture::fourier::{FourierTexture, FourierWaves};
+
 use super::{
     Bark, BarkPattern,
     noise::{Cells, Noise, hash, smoothstep, unit},
@@ -31,6 +33,16 @@ pub(super) struct Pattern<'a> {
     warp: [Noise; 3],
     grain: [Noise; 2],
     patches: [Noise; 2],
+    /// Only of the pattern that is made of them.
+    waves: Option<FourierWaves>,
+}
+
+/// Whole waves over the unit square, so that the tile has no seam.
+fn waves(bark: &Bark, seed: u32) -> Option<FourierWaves> {
+    let first_frequency_rad = std::f32::consts::TAU;
+    let texture =
+        FourierTexture { first_frequency_rad, tiles: true, seed: u64::from(seed), ..FourierTexture::default() };
+    (bark.pattern == BarkPattern::Fourier).then(|| texture.waves().ok()).flatten()
 }
 
 impl<'a> Pattern<'a> {
@@ -40,7 +52,7 @@ impl<'a> Pattern<'a> {
         // Grain runs along the trunk, but around it on bark that peels.
         let grain = match bark.pattern {
             BarkPattern::Furrows | BarkPattern::Strips => (110, 20),
-            BarkPattern::Plates => (80, 64),
+            BarkPattern::Plates | BarkPattern::Fourier => (80, 64),
             BarkPattern::Peeling | BarkPattern::Smooth => (10, 90),
         };
         Self {
@@ -51,6 +63,7 @@ impl<'a> Pattern<'a> {
             warp: [Noise::new(6, 4, salt(3)), Noise::new(6, 5, salt(4)), Noise::new(26, 14, salt(5))],
             grain: [Noise::new(grain.0, grain.1, salt(6)), Noise::new(128, 128, salt(7))],
             patches: [Noise::new(4, 4, salt(8)), Noise::new(17, 15, salt(9))],
+            waves: waves(bark, seed),
         }
     }
 
@@ -64,12 +77,28 @@ impl<'a> Pattern<'a> {
             BarkPattern::Strips => self.strips(uv, warp, fine, grain),
             BarkPattern::Peeling => self.peeling(uv, warp, fine, grain),
             BarkPattern::Smooth => self.smooth(uv, warp, fine, grain),
+            BarkPattern::Fourier => self.fourier(uv, grain),
         };
         let patches = self.patches[0].at(uv) + 0.5 * self.patches[1].at(uv) + 0.35 * grain;
         let covered = self.bark.lichen;
         let spread = smoothstep(0.75 - covered, 1.15 - covered, patches) * f32::from(u8::from(covered > 0.0));
         point.lichen = point.lichen.max(spread * point.face);
         point
+    }
+
+    /// Waves upon waves.
+    fn fourier(&self, uv: Vec2, grain: f32) -> Point {
+        let bark = self.bark;
+        let periods = Vec2::new(bark.plates_around as f32, bark.plates_along as f32);
+        let wave = self.waves.as_ref().map_or(0.5, |waves| waves.at(uv * periods));
+        let face = smoothstep(0.0, bark.furrow_width, wave);
+        Point {
+            height: wave + 0.15 * bark.roughness * grain,
+            face,
+            accent: smoothstep(0.55, 0.8, wave),
+            lichen: 0.0,
+            tone: 0.75 + 0.4 * wave + 0.3 * grain * bark.roughness,
+        }
     }
 
     /// Long ridges that part and meet, with cracks across.

@@ -51,6 +51,8 @@ pub struct Leaf {
     pub shoots: u32,
     /// Distance between leaves along a shoot as a share of a leaf's length, 0.05 to 2.
     pub spacing: f32,
+    /// How mottled leaves are by a Fourier texture, as Zaharia colours his: 0 to 1.
+    pub mottle: f32,
     /// Share of a shoot, from its root, that bears no leaves: 0 to 0.9.
     pub bare: f32,
 }
@@ -86,6 +88,7 @@ impl Default for Leaf {
             curl: 0.5,
             shoots: 7,
             spacing: 0.42,
+            mottle: 0.12,
             bare: 0.25,
         }
     }
@@ -105,6 +108,7 @@ impl Leaf {
         require("curl", self.curl, 0.0..=1.0)?;
         require("shoots", self.shoots as f32, 0.0..=40.0)?;
         require("spacing", self.spacing, 0.05..=2.0)?;
+        require("mottle", self.mottle, 0.0..=1.0)?;
         require("bare", self.bare, 0.0..=0.9)
     }
 }

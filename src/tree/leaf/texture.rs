@@ -13,7 +13,11 @@ use super::{
     spray::{PlacedLeaf, Shoot, shoots},
 };
 use crate::{
-    texture::{Canvas, TextureData, linear, mix},
+    texture::{
+        Canvas, TextureData,
+        fourier::{Combination, FourierTexture, FourierWaves},
+        linear, mix,
+    },
     tree::foliage::Foliage,
 };
 
@@ -66,7 +70,21 @@ struct Paint {
     normal: [f32; 4],
 }
 
+/// A few waves to a leaf.
+fn waves(leaf: &Leaf) -> Option<FourierWaves> {
+    let texture = FourierTexture {
+        terms: 4,
+        first_frequency_rad: std::f32::consts::TAU / leaf.length.max(0.05),
+        combination: Combination::Sum,
+        ..FourierTexture::default()
+    };
+    (leaf.mottle > 0.0).then(|| texture.waves().ok()).flatten()
+}
+
 struct Painter {
+    /// How far the Fourier texture darkens and lightens leaves; no waves where it does not.
+    mottle: f32,
+    waves: Option<FourierWaves>,
     colours: Canvas,
     normals: Canvas,
     colour: [f32; 3],
@@ -80,6 +98,8 @@ impl Painter {
         let colour = linear(leaf.colour);
         let ground = mix(colour, [0.0; 3], 0.3);
         Self {
+            mottle: leaf.mottle,
+            waves: waves(leaf),
             colours: Canvas::filled(SIZE, [ground[0], ground[1], ground[2], 0.0]),
             normals: Canvas::filled(SIZE, [0.0, 0.0, 1.0, 1.0]),
             colour,
@@ -112,6 +132,8 @@ impl Painter {
         let tone = level * (0.85 + 0.3 * leaf.tone);
         let texels = leaf.length * leaf.seen.min_element() * TEXELS;
         let middle = leaf.root + leaf.direction * (0.5 * leaf.length);
+        let (mottle, waves) = (self.mottle, self.waves.clone());
+        let mottling = |point: Vec2| waves.as_ref().map_or(1.0, |waves| 1.0 + mottle * (waves.at(point) - 0.5));
         // Bent leaves reach a little further.
         self.stamp(middle, (blade.reach() + leaf.bend.abs()) * leaf.length, |point| {
             let place = blade.at(leaf.local(point))?;
@@ -122,6 +144,7 @@ impl Painter {
                 return None;
             }
             let side = if leaf.turned { -1.0 } else { 1.0 };
+            let tone = tone * mottling(point);
             let slope = leaf.direction * place.slope.x + leaf.direction.perp() * place.slope.y;
             Some(Paint {
                 coverage,
