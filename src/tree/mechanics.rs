@@ -373,8 +373,8 @@ mod tests {
         (species, skeleton, trunk)
     }
 
-    /// Moore & Maguire (2004): the sway of conifers is linear in DBH/H^2. Their coefficients are unconfirmed; a third of
-    /// the line is what their trees scatter by.
+    /// Moore & Maguire (2004): the sway of conifers is linear in DBH/H^2. The coefficients are
+    /// unconfirmed, so a third of the line is allowed.
     #[test]
     fn a_fir_sways_as_slowly_as_real_conifers_at_all_ages() {
         let species = shipped("fir");
