@@ -188,10 +188,17 @@ mod tests {
     const OAK: &str = include_str!("../../assets/species/oak.species.ron");
     const FIR: &str = include_str!("../../assets/species/fir.species.ron");
 
+    const ZAHARIA_OAK: &str = include_str!("../../assets/species/zaharia_oak.species.ron");
+    const ZAHARIA_FIR: &str = include_str!("../../assets/species/zaharia_fir.species.ron");
+    const HONDA: &str = include_str!("../../assets/species/honda.species.ron");
+
     #[test]
     fn the_shipped_species_are_valid() {
         assert_eq!(Species::from_ron(OAK).unwrap().name, "oak");
         assert_eq!(Species::from_ron(FIR).unwrap().name, "fir");
+        for example in [ZAHARIA_OAK, ZAHARIA_FIR, HONDA] {
+            assert!(!matches!(Species::from_ron(example).unwrap().growth, Growth::ReevesBlau(_)));
+        }
         Species::default().validate().unwrap();
     }
 

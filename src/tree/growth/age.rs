@@ -11,7 +11,7 @@
 //! need no asymptote `A`. Girth has a slower rate than height and goes on when the height has levelled off; its shape
 //! of 3/2 makes a young tree's girth grow with its height to the power 3/2, the elastic similarity of trees (`McMahon`
 //! 1973, Science 179, 1201). The crown's width lies between the two, at their geometric mean. The default rates are
-//! chosen to give an oak of 2 m at 10 years and of 13 m at 60, not fitted to a table.
+//! chosen to give an oak about 2 m at 10 years and 12 m at 60, not fitted to a table.
 
 use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};

