@@ -37,6 +37,25 @@ fn bake(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// Bakes one mature tree of every shipped species; the throughput is in vertices.
+fn species(criterion: &mut Criterion) {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/species");
+    let mut files: Vec<_> =
+        std::fs::read_dir(folder).expect("it is shipped").flatten().map(|file| file.path()).collect();
+    files.sort();
+    let mut group = criterion.benchmark_group("bake_species");
+    group.sample_size(20);
+    for file in files {
+        let text = std::fs::read_to_string(&file).expect("it is readable");
+        let species = Species::from_ron(&text).expect("it is valid");
+        let bake = || TreeModel::bake(black_box(&species), species.age.mature_years, 1);
+        let model = bake();
+        group.throughput(Throughput::Elements((model.wood.positions.len() + model.leaves.positions.len()) as u64));
+        group.bench_function(&species.name, |bencher| bencher.iter(bake));
+    }
+    group.finish();
+}
+
 fn textures(criterion: &mut Criterion) {
     let oak = oak();
     let mut group = criterion.benchmark_group("texture");
@@ -46,5 +65,5 @@ fn textures(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, growth, bake, textures);
+criterion_group!(benches, growth, bake, species, textures);
 criterion_main!(benches);

@@ -7,8 +7,8 @@ use bevy::{
 
 /// Direction to the sun.
 const SUN: Vec3 = Vec3::new(0.65, 0.75, 0.55);
-const HORIZON: Vec3 = Vec3::new(0.86, 0.90, 0.94);
-const ZENITH: Vec3 = Vec3::new(0.42, 0.58, 0.80);
+const HORIZON: Vec3 = Vec3::new(1.45, 1.55, 1.65);
+const ZENITH: Vec3 = Vec3::new(0.55, 0.85, 1.45);
 /// Vertical field of view, rad.
 pub const FIELD_OF_VIEW: f32 = 0.6;
 
@@ -21,7 +21,7 @@ pub fn build(
     commands.spawn((
         Mesh3d(meshes.add(Circle::new(400.0))),
         MeshMaterial3d(materials.add(StandardMaterial {
-            base_color: Color::srgb(0.42, 0.43, 0.33),
+            base_color: Color::srgb(0.36, 0.40, 0.26),
             perceptual_roughness: 1.0,
             reflectance: 0.05,
             ..default()

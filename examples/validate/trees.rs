@@ -4,8 +4,11 @@ use crate::report::Report;
 use bevy_windwood::tree::{
     Species,
     crown::{CrownStatistics, impressionist},
-    growth::{Growth, zaharia::Oak},
-    mechanics::tree_sway,
+    growth::{
+        Growth,
+        zaharia::{Counts, Oak},
+    },
+    mechanics::{TreeSway, tree_sway},
     skeleton::grow,
 };
 use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
@@ -52,9 +55,7 @@ fn zaharias_oaks(report: &mut Report) {
         let begun = Instant::now();
         let counts: Vec<_> = (0..SEEDS).map(|seed| oak.counts(age, seed)).collect();
         let ms = begun.elapsed().as_secs_f64() * 1e3 / SEEDS as f64;
-        let mean = |of: fn(&bevy_windwood::tree::growth::zaharia::Counts) -> f64| {
-            counts.iter().map(of).sum::<f64>() / SEEDS as f64
-        };
+        let mean = |of: fn(&Counts) -> f64| counts.iter().map(of).sum::<f64>() / SEEDS as f64;
         let (ours_branches, ours_leaves) = (mean(|counts| counts.branches as f64), mean(|counts| counts.leaves as f64));
         println!("{age:>5} {ours_branches:>12.0} {branches:>9} {ours_leaves:>11.0} {leaves:>9} {ms:>12.2}");
         worst_branches = worst_branches.max((ours_branches / branches).ln().abs());
@@ -116,9 +117,8 @@ fn conifers(report: &mut Report) {
         for share in AGES {
             let years = share * species.age.mature_years;
             let sways: Vec<_> = (0..SEEDS).map(|seed| tree_sway(&species, &grow(&species, years, seed))).collect();
-            let mean = |of: fn(&bevy_windwood::tree::mechanics::TreeSway) -> f32| {
-                sways.iter().map(|sway| f64::from(of(sway))).sum::<f64>() / SEEDS as f64
-            };
+            let mean =
+                |of: fn(&TreeSway) -> f32| sways.iter().map(|sway| f64::from(of(sway))).sum::<f64>() / SEEDS as f64;
             let (hz, dbh_cm, height_m) =
                 (mean(|sway| sway.frequency_hz), 100.0 * mean(|sway| sway.dbh_m), mean(|sway| sway.height_m));
             let line_hz = 0.095 + 3.43 * dbh_cm / (height_m * height_m);

@@ -121,6 +121,7 @@ impl SeasonUniform {
 }
 
 const FOLIAGE_SHADER: &str = "embedded://bevy_windwood/sway/shaders/foliage.wgsl";
+const MASK_SHADER: &str = "embedded://bevy_windwood/sway/shaders/mask.wgsl";
 const SWAY_SHADER: &str = "embedded://bevy_windwood/sway/shaders/sway.wgsl";
 
 impl MaterialExtension for SwayExtension {
@@ -130,6 +131,10 @@ impl MaterialExtension for SwayExtension {
 
     fn vertex_shader() -> ShaderRef {
         SWAY_SHADER.into()
+    }
+
+    fn prepass_fragment_shader() -> ShaderRef {
+        MASK_SHADER.into()
     }
 
     fn prepass_vertex_shader() -> ShaderRef {

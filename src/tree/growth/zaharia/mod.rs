@@ -21,7 +21,10 @@
 
 use rand::{Rng, RngExt};
 
-pub use self::{fir::Fir, oak::Oak};
+pub use self::{
+    fir::Fir,
+    oak::{Counts, Oak},
+};
 use super::{
     age::Stage,
     envelope::{Envelope, EnvelopeShape},

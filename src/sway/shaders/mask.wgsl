@@ -1,0 +1,46 @@
+// What the prepass and the shadow pass show of a tree: as Bevy's own, but the mask counts the alpha of the vertices, too,
+// which lets billows grow transparent towards their outline. Normals are those of the vertices.
+
+#import bevy_pbr::mesh_view_bindings::view
+#import bevy_pbr::pbr_bindings::{base_color_sampler, base_color_texture, material}
+#import bevy_pbr::pbr_functions
+#import bevy_pbr::pbr_prepass_functions
+#import bevy_pbr::prepass_io
+
+fn cut_out(in: prepass_io::VertexOutput) {
+#ifdef VERTEX_UVS_A
+#ifdef WINDWOOD_LEAVES
+    let alpha = textureSampleBias(base_color_texture, base_color_sampler, in.uv, view.mip_bias).a * in.color.a;
+    if alpha < material.alpha_cutoff {
+        discard;
+    }
+#endif
+#endif
+}
+
+#ifdef PREPASS_FRAGMENT
+@fragment
+fn fragment(in: prepass_io::VertexOutput) -> prepass_io::FragmentOutput {
+#ifdef VISIBILITY_RANGE_DITHER
+    pbr_functions::visibility_range_dither(in.position, in.visibility_range_dither);
+#endif
+    cut_out(in);
+    var out: prepass_io::FragmentOutput;
+#ifdef UNCLIPPED_DEPTH_ORTHO_EMULATION
+    out.frag_depth = in.unclipped_depth;
+#endif
+#ifdef NORMAL_PREPASS
+    out.normal = vec4(in.world_normal * 0.5 + vec3(0.5), 1.0);
+#endif
+#ifdef MOTION_VECTOR_PREPASS
+    out.motion_vector =
+        pbr_prepass_functions::calculate_motion_vector(in.world_position, in.previous_world_position);
+#endif
+    return out;
+}
+#else
+@fragment
+fn fragment(in: prepass_io::VertexOutput) {
+    cut_out(in);
+}
+#endif

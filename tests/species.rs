@@ -1,0 +1,137 @@
+//! Every species that is shipped, and what becomes of their files when somebody's keyboard slips.
+
+use bevy_windwood::tree::{Species, SpeciesError, TreeModel, foliage::CLUSTERS_LIMIT, growth::reeves::BEAMS_LIMIT};
+use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
+use std::{fs, path::Path};
+
+/// Ages at which each is grown, as shares of the mature age.
+const AGES: [f32; 5] = [0.03, 0.1, 0.3, 1.0, 3.0];
+
+/// Name and text of every file in `assets/species`, in alphabetical order.
+fn shipped() -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/species");
+    let mut files: Vec<_> =
+        fs::read_dir(&folder).expect("it is there").map(|file| file.expect("readable").path()).collect();
+    files.sort();
+    let read = |path: std::path::PathBuf| {
+        let name = path.file_name().expect("it has one").to_string_lossy().into_owned();
+        (name, fs::read_to_string(&path).expect("readable"))
+    };
+    files.into_iter().map(read).collect()
+}
+
+fn check(name: &str, species: &Species, age_years: f32, seed: u64) -> TreeModel {
+    let model = TreeModel::bake(species, age_years, seed);
+    let finite = |floats: &[[f32; 3]]| floats.iter().flatten().all(|value| value.is_finite());
+    assert!(finite(&model.wood.positions) && finite(&model.wood.normals), "{name} at {age_years}: wood");
+    assert!(finite(&model.leaves.positions) && finite(&model.leaves.normals), "{name} at {age_years}: leaves");
+    assert!(model.beams.len() <= BEAMS_LIMIT && model.skeleton.clusters.len() <= CLUSTERS_LIMIT, "{name}");
+    assert!(model.beams.iter().all(|beam| beam.gain.is_finite() && beam.class.is_finite()), "{name}: dynamics");
+    model
+}
+
+#[test]
+fn there_are_twelve_kinds_at_least() {
+    let wanted = [
+        "oak",
+        "beech",
+        "birch",
+        "maple",
+        "willow",
+        "poplar",
+        "scots_pine",
+        "norway_spruce",
+        "fir",
+        "larch",
+        "hazel",
+        "dead_tree",
+    ];
+    let names: Vec<String> = shipped().into_iter().map(|(name, _)| name).collect();
+    for kind in wanted {
+        assert!(names.contains(&format!("{kind}.species.ron")), "{kind} is not shipped");
+    }
+}
+
+#[test]
+fn every_shipped_species_grows_from_sapling_to_old() {
+    for (name, text) in shipped() {
+        let species = Species::from_ron(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let models = AGES.map(|share| check(&name, &species, share * species.age.mature_years, 3));
+        let heights: Vec<f32> = models.iter().map(TreeModel::height_m).collect();
+        // A broken trunk may be shorter than a younger whole one.
+        let falls = heights.windows(2).filter(|pair| pair[1] < 0.9 * pair[0]).count();
+        assert!(falls == 0 || species.damage.broken_trunks > 0.0, "{name}: heights {heights:?}");
+        assert!(heights[0] < 0.5 * heights[3], "{name}: heights {heights:?}");
+    }
+}
+
+/// A tree is a draw among thousands: what it costs is bounded.
+#[test]
+fn no_shipped_species_is_dear() {
+    for (name, text) in shipped() {
+        let species = Species::from_ron(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+        for seed in 0..2 {
+            let model = check(&name, &species, species.age.mature_years, seed);
+            let vertices = model.wood.positions.len() + model.leaves.positions.len();
+            assert!(vertices < 40_000, "{name} has {vertices} vertices");
+            assert!(model.beams.len() < 1500, "{name} has {} beams", model.beams.len());
+        }
+    }
+}
+
+/// Replaces one number of a file by something else: what is read is an error that says where, or a tree all the same.
+#[test]
+fn slips_of_the_keyboard_are_named_or_harmless() {
+    const SLIPS: [&str; 8] = ["NaN", "-1.0", "0", "1e30", "-1e30", "inf", "\"much\"", "99999999"];
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(11);
+    let (mut refused, mut grown) = (0, 0);
+    for (name, text) in shipped() {
+        let numbers: Vec<(usize, usize)> = numbers(&text);
+        for _ in 0..12 {
+            let (from, to) = numbers[random.random_range(0..numbers.len())];
+            let slip = SLIPS[random.random_range(0..SLIPS.len())];
+            let broken = format!("{}{slip}{}", &text[..from], &text[to..]);
+            match Species::from_ron(&broken) {
+                Ok(species) => {
+                    check(&name, &species, species.age.mature_years, 1);
+                    grown += 1;
+                }
+                Err(SpeciesError::Syntax { line, .. }) => {
+                    assert_eq!(line, text[..from].matches('\n').count() + 1, "{name}: {slip}");
+                    refused += 1;
+                }
+                Err(SpeciesError::OutOfRange { field, allowed, .. }) => {
+                    assert!(!field.is_empty() && !allowed.is_empty());
+                    refused += 1;
+                }
+            }
+        }
+    }
+    assert!(refused > 50, "{refused} were refused, {grown} grew");
+}
+
+/// Where the numbers of a text are, those in comments left out.
+fn numbers(text: &str) -> Vec<(usize, usize)> {
+    let mut found = Vec::new();
+    let mut at = 0;
+    for line in text.split_inclusive('\n') {
+        let code = line.split("//").next().unwrap_or("");
+        let mut start = None;
+        for (index, c) in code.char_indices().chain([(code.len(), ' ')]) {
+            match (c.is_ascii_digit() || c == '.' || c == '-', start) {
+                (true, None) => start = Some(index),
+                (false, Some(from)) if code[from..index].contains(|c: char| c.is_ascii_digit()) => {
+                    let named = code[..from].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == '"');
+                    if !named && !c.is_alphanumeric() {
+                        found.push((at + from, at + index));
+                    }
+                    start = None;
+                }
+                (false, Some(_)) => start = None,
+                _ => {}
+            }
+        }
+        at += line.len();
+    }
+    found
+}
