@@ -38,11 +38,7 @@ pub enum ScatterError {
 }
 
 impl ScatterError {
-    pub(super) fn out_of_range(
-        field: impl Into<String>,
-        value: impl Display,
-        allowed: impl Into<String>,
-    ) -> Self {
+    pub(super) fn out_of_range(field: impl Into<String>, value: impl Display, allowed: impl Into<String>) -> Self {
         Self::OutOfRange { field: field.into(), value: value.to_string(), allowed: allowed.into() }
     }
 

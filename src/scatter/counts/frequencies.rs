@@ -41,7 +41,11 @@ impl Frequencies {
     pub fn of_counts(counts: &[u32]) -> Result<Self, ScatterError> {
         let greatest = counts.iter().copied().max().unwrap_or(0) as usize;
         if greatest > GREATEST_COUNT {
-            return Err(ScatterError::out_of_range("plants in one quadrat", greatest, format!("0 to {GREATEST_COUNT}")));
+            return Err(ScatterError::out_of_range(
+                "plants in one quadrat",
+                greatest,
+                format!("0 to {GREATEST_COUNT}"),
+            ));
         }
         let mut quadrats_with = vec![0; greatest + 1];
         for &count in counts {
@@ -126,7 +130,10 @@ mod tests {
     #[test]
     fn tables_without_quadrats_or_plants_are_refused() {
         assert_eq!(Frequencies::new(vec![]).unwrap_err().to_string(), "`quadrats` is 0, but must be 2 to 2^40");
-        assert_eq!(Frequencies::of_counts(&[0, 0, 0]).unwrap_err().to_string(), "`plants` is 0, but must be at least 1");
+        assert_eq!(
+            Frequencies::of_counts(&[0, 0, 0]).unwrap_err().to_string(),
+            "`plants` is 0, but must be at least 1"
+        );
         assert!(Frequencies::of_counts(&[u32::MAX, 1]).is_err());
         assert!(Frequencies::new(vec![u64::MAX, u64::MAX]).is_err());
     }

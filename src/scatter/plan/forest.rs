@@ -220,7 +220,9 @@ mod tests {
         assert!(error(|area| area.stock[0].share = f32::NAN).starts_with("`areas[0].stock[0].share` is NaN"));
         assert!(error(|area| area.stock.clear()).starts_with("`areas[0].number of stock` is 0"));
         assert!(error(|area| area.stock[0].share = 0.0).starts_with("`areas[0].sum of shares` is 0"));
-        assert!(error(|area| area.pattern = CountModel::NegativeBinomial { k: -2.0 }).starts_with("`areas[0].pattern.k`"));
+        assert!(
+            error(|area| area.pattern = CountModel::NegativeBinomial { k: -2.0 }).starts_with("`areas[0].pattern.k`")
+        );
         assert!(error(|area| area.quadrat_m = 900.0).starts_with("`areas[0].quadrat_m` is 900, but must be at most"));
         assert!(error(|area| area.quadrat_m = f32::NAN).starts_with("`areas[0].quadrat_m` is NaN"));
         assert!(error(|area| area.least_distance_m = 5.0).starts_with("`areas[0].least_distance_m` is 5"));

@@ -14,8 +14,8 @@ mod shape;
 mod stock;
 
 pub use forest::{Area, ForestPlan};
-pub use keep_out::KeepOut;
 pub(super) use keep_out::Blocker;
+pub use keep_out::KeepOut;
 pub(super) use shape::Region;
 pub use shape::Shape;
 pub use stock::{GroundLimits, Stock};

@@ -100,9 +100,8 @@ impl Polygon {
         if at.cmplt(self.min).any() || at.cmpgt(self.max).any() {
             return false;
         }
-        let crosses = |[a, b]: &[DVec2; 2]| {
-            (a.y > at.y) != (b.y > at.y) && at.x < a.x + (at.y - a.y) / (b.y - a.y) * (b.x - a.x)
-        };
+        let crosses =
+            |[a, b]: &[DVec2; 2]| (a.y > at.y) != (b.y > at.y) && at.x < a.x + (at.y - a.y) / (b.y - a.y) * (b.x - a.x);
         self.bands[self.band(at.y)].iter().filter(|edge| crosses(edge)).count() % 2 == 1
     }
 }
@@ -134,7 +133,8 @@ mod tests {
         );
         let spike = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [20.0, 10.0], [10.0, 10.0]];
         assert!(error(&spike).contains("crossing itself"));
-        assert!(error(&[[0.0, 0.0], [5.0, 0.0], [10.0, 0.0]]).starts_with("`area of corners_m` is 0"));
+        assert!(error(&[[0.0, 0.0], [5.0, 0.0], [10.0, 0.0]]).contains("crossing itself"));
+        assert!(error(&[[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]]).starts_with("`area of corners_m` is 0.005"));
         assert!(error(&[[0.0, 0.0], [0.0, 0.0], [10.0, 0.0], [0.0, 9.0]]).contains("crossing itself"));
         assert!(error(&[[0.0, 0.0], [f32::NAN, 0.0], [10.0, 9.0]]).starts_with("`corners_m[1]` is NaN"));
     }

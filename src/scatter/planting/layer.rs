@@ -138,13 +138,7 @@ impl Layer {
         random
     }
 
-    fn candidate(
-        &self,
-        at: DVec2,
-        seed: u64,
-        ground: &impl Ground,
-        free: impl Fn(DVec2) -> bool,
-    ) -> Option<Candidate> {
+    fn candidate(&self, at: DVec2, seed: u64, ground: &impl Ground, free: impl Fn(DVec2) -> bool) -> Option<Candidate> {
         let coverage = self.region.coverage(at);
         let covered = coverage >= 1.0 || share_of(mix(seed ^ COVERAGE)) < coverage;
         if !covered || !free(at) {

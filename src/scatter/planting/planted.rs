@@ -108,7 +108,8 @@ mod tests {
 
     #[test]
     fn ages_seasons_and_tints_spread_as_the_stock_says() {
-        let stock = Stock { season_offset_days: -20.0, season_spread_days: 6.0, tint_spread: 0.5, ..Default::default() };
+        let stock =
+            Stock { season_offset_days: -20.0, season_spread_days: 6.0, tint_spread: 0.5, ..Default::default() };
         let plants = plants(&stock);
         // Standard errors: 0.2%, 1% (a long tail), 0.03 days, 0.4%.
         let (age, spread) = moments(plants.iter().map(|plant| plant.age_years));

@@ -93,6 +93,7 @@ mod tests {
             seed: random.next_u64(),
             least_distance_m: least_distance_m * random.random_range(0.5..=1.0),
             area: random.random_range(0..3),
+            in_cell: true,
             ..Candidate::default()
         };
         (0..count).map(one).collect()

@@ -121,8 +121,7 @@ fn the_pattern_is_the_laws_and_the_density_as_asked() {
             pattern,
             ..Default::default()
         };
-        let points: Vec<DVec2> =
-            whole(&planter(vec![area], vec![]), &LevelGround(0.0)).iter().map(map_place).collect();
+        let points: Vec<DVec2> = whole(&planter(vec![area], vec![]), &LevelGround(0.0)).iter().map(map_place).collect();
         let grid = QuadratGrid::new(DVec2::splat(-500.0), DVec2::splat(500.0), 100, 100).unwrap();
         let law = pattern.with_mean(1.5).unwrap();
         // Five standard errors; and a p value that one pattern in 20,000 falls below.
@@ -217,9 +216,7 @@ fn an_empty_plan_plants_nothing_and_too_many_species_are_refused() {
     assert_eq!(planter(vec![Area { density_per_ha: 0.0, ..Default::default() }], vec![]).cells(), None);
     let areas = (0..10_u32)
         .map(|area| Area {
-            stock: (0..30)
-                .map(|number| Stock { species: format!("{area} {number}"), ..Default::default() })
-                .collect(),
+            stock: (0..30).map(|number| Stock { species: format!("{area} {number}"), ..Default::default() }).collect(),
             ..Default::default()
         })
         .collect();

@@ -123,9 +123,8 @@ mod tests {
 
     #[test]
     fn ground_without_area_and_quadrats_without_number_are_refused() {
-        let error = |max_m: DVec2, columns, rows| {
-            QuadratGrid::new(DVec2::ZERO, max_m, columns, rows).unwrap_err().to_string()
-        };
+        let error =
+            |max_m: DVec2, columns, rows| QuadratGrid::new(DVec2::ZERO, max_m, columns, rows).unwrap_err().to_string();
         assert!(error(DVec2::new(0.0, 1.0), 1, 1).starts_with("`max.x - min.x` is 0"));
         assert!(error(DVec2::new(1.0, f64::NAN), 1, 1).starts_with("`max.y` is NaN"));
         assert!(error(DVec2::ONE, 0, 3).starts_with("`quadrats` is 0"));

@@ -141,11 +141,9 @@ mod tests {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(2);
         let counts = exact_counts(model, 1000, 1000, &mut random).unwrap();
         let law = model.with_mean(1.0).unwrap();
-        let distance = |counts: &[u32]| {
-            goodness_of_fit(&law, &Frequencies::of_counts(counts).unwrap(), 0).unwrap().chi_square
-        };
-        let drawn: Vec<f64> =
-            (0..100).map(|_| distance(&draw_counts(&law, 1000, &mut random))).collect();
+        let distance =
+            |counts: &[u32]| goodness_of_fit(&law, &Frequencies::of_counts(counts).unwrap(), 0).unwrap().chi_square;
+        let drawn: Vec<f64> = (0..100).map(|_| distance(&draw_counts(&law, 1000, &mut random))).collect();
         // Drawn counts are at a distance of 5 or 6 on average.
         assert!(drawn.iter().all(|drawn| distance(&counts) < 0.25 * drawn), "{}", distance(&counts));
         let variance = Frequencies::of_counts(&counts).unwrap().variance();
