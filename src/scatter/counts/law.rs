@@ -103,7 +103,7 @@ impl CountModel {
     /// [`ScatterError::OutOfRange`] where a parameter is outside its domain, or a binomial's quadrat has fewer places
     /// than plants.
     pub fn with_mean(self, mean: f64) -> Result<CountLaw, ScatterError> {
-        require("mean per quadrat", mean, LEAST_MEAN..=GREATEST_MEAN)?;
+        require("mean_per_quadrat", mean, LEAST_MEAN..=GREATEST_MEAN)?;
         self.validate()?;
         match self {
             Self::Binomial { n } if mean > f64::from(n) => {
@@ -187,7 +187,7 @@ mod tests {
     #[test]
     fn parameters_outside_their_domain_are_named() {
         let message = |model: CountModel, mean| model.with_mean(mean).unwrap_err().to_string();
-        assert_eq!(message(CountModel::Poisson, f64::NAN), "`mean per quadrat` is NaN, but must be 0.000001 to 500");
+        assert_eq!(message(CountModel::Poisson, f64::NAN), "`mean_per_quadrat` is NaN, but must be 0.000001 to 500");
         assert_eq!(
             message(CountModel::Binomial { n: 2 }, 2.5),
             "`n` is 2, but must be at least the mean per quadrat, 2.5"

@@ -48,7 +48,7 @@ impl KeepOut {
     pub(super) fn validate(&self) -> Result<(), ScatterError> {
         match self {
             Self::Path { points_m, width_m } => {
-                require("number of points_m", points_m.len(), 2..=MOST_CORNERS)?;
+                require("points_m.len()", points_m.len(), 2..=MOST_CORNERS)?;
                 for (index, point) in points_m.iter().enumerate() {
                     require_place(&format!("points_m[{index}]"), *point)?;
                 }
@@ -179,7 +179,7 @@ mod tests {
     fn shapes_that_are_none_are_refused() {
         let error = |keep_out: KeepOut| keep_out.validate().unwrap_err().to_string();
         let path = KeepOut::Path { points_m: vec![[0.0, 0.0]], width_m: 2.0 };
-        assert!(error(path).starts_with("`number of points_m` is 1"));
+        assert!(error(path).starts_with("`points_m.len()` is 1"));
         assert!(error(KeepOut::Disc { centre_m: [0.0, 0.0], radius_m: -1.0 }).starts_with("`radius_m` is -1"));
         let house = KeepOut::House { centre_m: [0.0, f32::NAN], size_m: [1.0, 1.0], turn_deg: 0.0 };
         assert!(error(house).starts_with("`centre_m` is NaN"));

@@ -11,12 +11,12 @@ const FULL: f32 = 9.0;
 
 /// Checks the rows of a mask.
 pub(super) fn validate(rows: &[String]) -> Result<(), ScatterError> {
-    require("number of rows", rows.len(), 1..=MOST_POINTS_ALONG)?;
+    require("rows.len()", rows.len(), 1..=MOST_POINTS_ALONG)?;
     let columns = rows[0].len();
     for (index, row) in rows.iter().enumerate() {
-        require(&format!("length of rows[{index}]"), row.len(), 1..=MOST_POINTS_ALONG)?;
+        require(&format!("rows[{index}].len()"), row.len(), 1..=MOST_POINTS_ALONG)?;
         if row.len() != columns {
-            let field = format!("length of rows[{index}]");
+            let field = format!("rows[{index}].len()");
             return Err(ScatterError::out_of_range(field, row.len(), format!("that of rows[0], {columns}")));
         }
         if let Some(wrong) = row.chars().find(|c| !c.is_ascii_digit() && *c != '.') {
@@ -91,10 +91,10 @@ mod tests {
     #[test]
     fn a_mask_that_is_no_rectangle_of_digits_is_refused() {
         let error = |text: &[&str]| validate(&rows(text)).unwrap_err().to_string();
-        assert_eq!(error(&[]), "`number of rows` is 0, but must be 1 to 4096");
-        assert_eq!(error(&["12", "1"]), "`length of rows[1]` is 1, but must be that of rows[0], 2");
+        assert_eq!(error(&[]), "`rows.len()` is 0, but must be 1 to 4096");
+        assert_eq!(error(&["12", "1"]), "`rows[1].len()` is 1, but must be that of rows[0], 2");
         assert_eq!(error(&["12", "1x"]), "`rows[1]` is `x`, but must be digits from 0 to 9, and dots");
         assert!(error(&["é"]).contains("`rows[0]`"));
-        assert!(error(&[""]).contains("`length of rows[0]` is 0"));
+        assert!(error(&[""]).contains("`rows[0].len()` is 0"));
     }
 }

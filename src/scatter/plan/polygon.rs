@@ -14,7 +14,7 @@ pub(super) fn place([x, z]: Place) -> DVec2 {
 
 /// Refuses a polygon with too few or too many corners, without area, or that touches or crosses itself.
 pub(super) fn validate(field: &str, corners: &[Place]) -> Result<(), ScatterError> {
-    require(&format!("number of {field}"), corners.len(), 3..=MOST_CORNERS)?;
+    require(&format!("{field}.len()"), corners.len(), 3..=MOST_CORNERS)?;
     for (index, corner) in corners.iter().enumerate() {
         require_place(&format!("{field}[{index}]"), *corner)?;
     }
@@ -39,7 +39,7 @@ pub(super) fn validate(field: &str, corners: &[Place]) -> Result<(), ScatterErro
         }
     }
     let area = 0.5 * edges.iter().map(|[a, b]| a.perp_dot(*b)).sum::<f64>().abs();
-    require(&format!("area of {field}"), area, 0.01..=f64::MAX)
+    require(&format!("{field}.area()"), area, 0.01..=f64::MAX)
 }
 
 /// Whether the way from `a` by `b` to `c` goes back over itself, or stands still.
@@ -125,7 +125,7 @@ mod tests {
     fn polygons_that_are_no_areas_are_refused() {
         let error = |corners: &[Place]| validate("corners_m", corners).unwrap_err().to_string();
         validate("corners_m", &L_SHAPE).unwrap();
-        assert!(error(&[[0.0, 0.0], [1.0, 0.0]]).starts_with("`number of corners_m` is 2"));
+        assert!(error(&[[0.0, 0.0], [1.0, 0.0]]).starts_with("`corners_m.len()` is 2"));
         let bow = [[0.0, 0.0], [10.0, 10.0], [10.0, 0.0], [0.0, 10.0]];
         assert_eq!(
             error(&bow),
@@ -134,7 +134,7 @@ mod tests {
         let spike = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [20.0, 10.0], [10.0, 10.0]];
         assert!(error(&spike).contains("crossing itself"));
         assert!(error(&[[0.0, 0.0], [5.0, 0.0], [10.0, 0.0]]).contains("crossing itself"));
-        assert!(error(&[[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]]).starts_with("`area of corners_m` is 0.005"));
+        assert!(error(&[[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]]).starts_with("`corners_m.area()` is 0.005"));
         assert!(error(&[[0.0, 0.0], [0.0, 0.0], [10.0, 0.0], [0.0, 9.0]]).contains("crossing itself"));
         assert!(error(&[[0.0, 0.0], [f32::NAN, 0.0], [10.0, 9.0]]).starts_with("`corners_m[1]` is NaN"));
     }

@@ -11,6 +11,9 @@ use crate::scatter::{
     quadrat::throw_darts,
 };
 
+/// How far rounding to `f32` may move a place, at the farthest from the origin.
+const ROUNDING_M: f64 = 0.01;
+
 /// A plant that would stand somewhere, if nothing is in its way.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Candidate {
@@ -110,12 +113,14 @@ impl Layer {
             return;
         }
         let quadrat = |place: DVec2| -> IVec2 { (place / self.quadrat_m).floor().as_ivec2() };
-        let (first, last) = (quadrat(from), quadrat(to));
+        let (first, last) = (quadrat(from - ROUNDING_M), quadrat(to + ROUNDING_M));
         for row in first.y..=last.y {
             for column in first.x..=last.x {
                 let mut random = self.throw(IVec2::new(column, row), darts);
-                for &at in &*darts {
+                for dart in &*darts {
                     let seed = random.next_u64();
+                    // Everything is decided about the place as it will be told.
+                    let at = dart.as_vec2().as_dvec2();
                     let wanted = around.contains(at) && at.cmpge(min).all() && at.cmple(max).all();
                     if wanted
                         && candidates.len() < most

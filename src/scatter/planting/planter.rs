@@ -57,7 +57,7 @@ impl Planter {
                     species.push(stock.species.clone());
                     species.len() - 1
                 });
-                require("number of species", number + 1, 1..=MOST_SPECIES)?;
+                require("species.len()", number + 1, 1..=MOST_SPECIES)?;
                 numbers.push(number as u8);
             }
             species_of_stock.push(numbers);

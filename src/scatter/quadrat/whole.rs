@@ -156,6 +156,6 @@ mod tests {
         let mut error = |model, points, quadrats| exact_counts(model, points, quadrats, &mut random).unwrap_err();
         assert!(error(CountModel::Binomial { n: 2 }, 300, 100).to_string().starts_with("`n` is 2"));
         assert!(error(CountModel::Poisson, 10, 0).to_string().starts_with("`quadrats` is 0"));
-        assert!(error(CountModel::Poisson, usize::MAX, 100).to_string().starts_with("`mean per quadrat`"));
+        assert!(error(CountModel::Poisson, usize::MAX, 100).to_string().starts_with("`mean_per_quadrat`"));
     }
 }
