@@ -207,7 +207,7 @@ const PURITY: u64 = 0x7075_7269;
 const SPECIES: u64 = 0x7370_6563;
 const DRIFT: u64 = 0x6472_6966;
 
-/// The finaliser of SplitMix64 (Steele, Lea & Flood 2014): every bit of the answer depends on every bit of the question.
+/// The finaliser of `SplitMix64` (Steele, Lea & Flood 2014): every bit of the answer depends on every bit of the question.
 fn mix(value: u64) -> u64 {
     let value = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let value = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
