@@ -13,7 +13,7 @@
 //! | Poisson-negative binomial | clumps of very uneven size | 1 + (k + 1) p |
 //!
 //! 1. A [`CountModel`] with a mean is a [`CountLaw`]; its [`Probabilities`] come from recursions.
-//! 2. A real pattern, counted, is a table of [`Frequencies`]. [`dispersion`] tells whether it is random at all;
+//! 2. A real pattern, counted, is a table of [`Frequencies`]. [`dispersion()`] tells whether it is random at all;
 //!    [`by_moments`] and [`by_likelihood`] estimate a law's parameters; [`characterise`] ranks the laws by Akaike's
 //!    criterion.
 

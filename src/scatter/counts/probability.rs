@@ -142,6 +142,7 @@ fn compound(mean: f64, clump: f64, empty_clump: f64, one_more: &[f64]) -> Vec<f6
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scatter::counts::GREATEST_MEAN;
     use approx::assert_relative_eq;
     use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
     use rustfft::{FftPlanner, num_complex::Complex};
@@ -224,14 +225,12 @@ mod tests {
             CountModel::PoissonNegativeBinomial { k: 0.001, p: 99.0 },
             CountModel::PoissonNegativeBinomial { k: 9.0, p: 10.0 },
         ] {
-            let (_, probabilities) = table(model, GREATEST);
+            let (_, probabilities) = table(model, GREATEST_MEAN);
             let sum: f64 = probabilities.as_slice().iter().sum();
             assert_relative_eq!(sum, 1.0, epsilon = 1e-9);
             assert!(probabilities.as_slice().len() < MOST_ENTRIES, "{model:?}");
         }
     }
-
-    const GREATEST: f64 = crate::scatter::counts::GREATEST_MEAN;
 
     #[test]
     fn drawn_counts_have_the_probabilities_of_the_table() {

@@ -139,5 +139,4 @@ impl Planter {
 }
 
 #[cfg(test)]
-#[path = "tests.rs"]
 mod tests;

@@ -43,7 +43,7 @@ fn fingerprints(planted: &[Planted]) -> BTreeSet<[u32; 6]> {
 }
 
 fn shipped() -> ForestPlan {
-    ForestPlan::from_ron(include_str!("../../../assets/forests/mixed.forest.ron")).unwrap()
+    ForestPlan::from_ron(include_str!("../../../../assets/forests/mixed.forest.ron")).unwrap()
 }
 
 #[test]
