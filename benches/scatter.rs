@@ -1,0 +1,90 @@
+//! How long a forest takes to plant, and a pattern to characterise.
+
+use bevy::math::IVec2;
+use bevy_windwood::scatter::{
+    ForestPlan, LevelGround, Planter,
+    counts::{CountKind, Frequencies, by_likelihood, characterise},
+    plan::{Area, KeepOut, Shape},
+    quadrat::read_points,
+};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use std::{fmt::Write, hint::black_box};
+
+fn shipped() -> ForestPlan {
+    ForestPlan::from_ron(include_str!("../assets/forests/mixed.forest.ron")).expect("the shipped forest is valid")
+}
+
+/// The shipped forest in a landscape of others.
+fn huge() -> ForestPlan {
+    let mut plan = shipped();
+    for number in 0..2000_u16 {
+        let [x, z] = [number % 50, number / 50].map(|step| 1000.0 + 1200.0 * f32::from(step));
+        let shape = Shape::Rectangle { min_m: [x, z], max_m: [x + 900.0, z + 900.0] };
+        plan.areas.push(Area { shape, ..Area::default() });
+        let points_m = (0..10_u8).map(|point| [x + 50.0 * f32::from(point), z + 30.0]).collect();
+        plan.keep_out.push(KeepOut::Path { points_m, width_m: 4.0 });
+    }
+    plan
+}
+
+/// A million trees in 6,241 cells.
+fn forest(criterion: &mut Criterion) {
+    let shape = Shape::Rectangle { min_m: [-2500.0; 2], max_m: [2500.0; 2] };
+    let area = Area { shape, density_per_ha: 400.0, least_distance_m: 1.0, ..Area::default() };
+    let planter = Planter::new(&ForestPlan { areas: vec![area], ..ForestPlan::default() }).expect("a valid plan");
+    let [first, last] = planter.cells().expect("something grows");
+    let mut group = criterion.benchmark_group("plant");
+    group.sample_size(10).throughput(Throughput::Elements(1_000_000));
+    let mut planted = Vec::new();
+    group.bench_function("million", |bencher| {
+        bencher.iter(|| {
+            let mut points = 0;
+            for row in first.y..=last.y {
+                for column in first.x..=last.x {
+                    planter.plant(IVec2::new(column, row), &LevelGround(0.0), &mut planted);
+                    points += planted.len();
+                }
+            }
+            points
+        });
+    });
+    group.finish();
+}
+
+/// The same cell, alone and in a landscape of others.
+fn cell(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("plant_cell");
+    for (name, plan) in [("small_forest", shipped()), ("huge_forest", huge())] {
+        let planter = Planter::new(&plan).expect("a valid plan");
+        let mut planted = Vec::new();
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| planter.plant(black_box(IVec2::new(1, 1)), &LevelGround(0.0), &mut planted));
+        });
+    }
+    group.finish();
+}
+
+fn fits(criterion: &mut Criterion) {
+    let redwoods = Frequencies::new(vec![101, 44, 27, 12, 5, 4, 2, 0, 0, 1]).expect("a table of counts");
+    let mut group = criterion.benchmark_group("fit");
+    for kind in CountKind::ALL {
+        group.bench_function(format!("{kind:?}"), |bencher| bencher.iter(|| by_likelihood(kind, black_box(&redwoods))));
+    }
+    group.bench_function("characterise", |bencher| bencher.iter(|| characterise(black_box(&redwoods))));
+    group.finish();
+}
+
+fn csv(criterion: &mut Criterion) {
+    let mut text = String::from("x,y\n");
+    for number in 0..1_000_000_u32 {
+        let [x, y] = [number % 1000, number / 1000].map(|place| 1.37 * f64::from(place));
+        writeln!(text, "{x:.3},{y:.3}").expect("strings take all");
+    }
+    let mut group = criterion.benchmark_group("csv");
+    group.sample_size(10).throughput(Throughput::Elements(1_000_000));
+    group.bench_function("million", |bencher| bencher.iter(|| read_points(text.as_bytes())));
+    group.finish();
+}
+
+criterion_group!(benches, forest, cell, fits, csv);
+criterion_main!(benches);

@@ -1,0 +1,98 @@
+//! The outline of an area.
+
+use bevy::{math::DVec2, reflect::Reflect};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Place,
+    mask::{self, PaintedMask},
+    polygon::{self, Polygon},
+    require_rectangle,
+};
+use crate::scatter::error::ScatterError;
+
+/// The outline of an area on the map.
+#[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Shape {
+    /// A rectangle along the axes.
+    Rectangle {
+        /// Least corner (x, z). units: m.
+        min_m: Place,
+        /// Greatest corner (x, z). units: m.
+        max_m: Place,
+    },
+    /// A polygon that does not cross itself.
+    Polygon {
+        /// Its corners (x, z) in either sense, 3 to 4096. units: m.
+        corners_m: Vec<Place>,
+    },
+    /// A painted map of the density, spread over a rectangle and smoothed between its points.
+    Mask {
+        /// Least corner (x, z). units: m.
+        min_m: Place,
+        /// Greatest corner (x, z). units: m.
+        max_m: Place,
+        /// Rows of equal length, the first at least z, each character a point: a digit from 0 (nothing) to 9 (the
+        /// area's full density), or a dot for nothing. At most 4096 x 4096.
+        rows: Vec<String>,
+    },
+}
+
+impl Default for Shape {
+    /// A hectare about the origin.
+    fn default() -> Self {
+        Self::Rectangle { min_m: [-50.0; 2], max_m: [50.0; 2] }
+    }
+}
+
+impl Shape {
+    pub(super) fn validate(&self) -> Result<(), ScatterError> {
+        match self {
+            Self::Rectangle { min_m, max_m } => require_rectangle(*min_m, *max_m),
+            Self::Polygon { corners_m } => polygon::validate("corners_m", corners_m),
+            Self::Mask { min_m, max_m, rows } => {
+                require_rectangle(*min_m, *max_m)?;
+                mask::validate(rows)
+            }
+        }
+    }
+}
+
+/// A shape, made ready for questions.
+#[derive(Clone, Debug)]
+pub(in crate::scatter) enum Region {
+    Rectangle { min: DVec2, max: DVec2 },
+    Polygon(Polygon),
+    Mask(PaintedMask),
+}
+
+impl Region {
+    pub(in crate::scatter) fn new(shape: &Shape) -> Self {
+        match shape {
+            Shape::Rectangle { min_m, max_m } => {
+                Self::Rectangle { min: polygon::place(*min_m), max: polygon::place(*max_m) }
+            }
+            Shape::Polygon { corners_m } => Self::Polygon(Polygon::new(corners_m)),
+            Shape::Mask { min_m, max_m, rows } => Self::Mask(PaintedMask::new(*min_m, *max_m, rows)),
+        }
+    }
+
+    /// The rectangle around the shape.
+    pub(in crate::scatter) fn bounds(&self) -> [DVec2; 2] {
+        match self {
+            Self::Rectangle { min, max } => [*min, *max],
+            Self::Polygon(polygon) => polygon.bounds(),
+            Self::Mask(mask) => mask.bounds(),
+        }
+    }
+
+    /// The share of the area's density at a place within the bounds, 0 to 1.
+    pub(in crate::scatter) fn coverage(&self, at: DVec2) -> f32 {
+        match self {
+            Self::Rectangle { .. } => 1.0,
+            Self::Polygon(polygon) => f32::from(u8::from(polygon.contains(at))),
+            Self::Mask(mask) => mask.coverage(at),
+        }
+    }
+}

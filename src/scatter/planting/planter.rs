@@ -1,0 +1,142 @@
+//! Plants a plan, cell by cell.
+
+use bevy::math::{DVec2, IVec2, Vec2, Vec3};
+
+use super::{
+    index::BoxIndex,
+    layer::{Candidate, Layer, Square},
+    planted::Planted,
+    spacing::keep_apart,
+};
+use crate::scatter::{
+    error::{ScatterError, require},
+    ground::Ground,
+    plan::{Blocker, ForestPlan, KeepOut},
+};
+
+/// Species of one plan: their numbers are bytes.
+const MOST_SPECIES: usize = 256;
+/// Where areas overlap without measure, a cell stops here.
+const MOST_CANDIDATES: usize = 1 << 22;
+
+/// A plan made ready to be planted.
+#[derive(Clone, Debug)]
+pub struct Planter {
+    cell_m: f64,
+    species: Vec<String>,
+    layers: Vec<Layer>,
+    /// Number of the species of each stock of each layer.
+    species_of_stock: Vec<Vec<u8>>,
+    layers_by_place: BoxIndex,
+    blockers: Vec<Blocker>,
+    blockers_by_place: BoxIndex,
+    greatest_distance_m: f64,
+}
+
+impl Planter {
+    /// Makes a plan ready.
+    ///
+    /// # Errors
+    /// [`ScatterError::OutOfRange`] where the plan is not valid or has more than 256 species.
+    pub fn new(plan: &ForestPlan) -> Result<Self, ScatterError> {
+        plan.validate()?;
+        // Areas where nothing grows still count, so that growing something there changes no other area.
+        let layers: Vec<Layer> = plan
+            .areas
+            .iter()
+            .zip(0..)
+            .filter(|(area, _)| area.density_per_ha > 0.0)
+            .map(|(area, number)| Layer::new(area, number, plan.seed))
+            .collect::<Result<_, _>>()?;
+        let mut species: Vec<String> = Vec::new();
+        let mut species_of_stock = Vec::with_capacity(layers.len());
+        for layer in &layers {
+            let mut numbers = Vec::with_capacity(layer.stocks().len());
+            for stock in layer.stocks() {
+                let number = species.iter().position(|name| *name == stock.species).unwrap_or_else(|| {
+                    species.push(stock.species.clone());
+                    species.len() - 1
+                });
+                require("species.len()", number + 1, 1..=MOST_SPECIES)?;
+                numbers.push(number as u8);
+            }
+            species_of_stock.push(numbers);
+        }
+        let blockers: Vec<Blocker> = plan.keep_out.iter().flat_map(KeepOut::blockers).collect();
+        Ok(Self {
+            cell_m: f64::from(plan.cell_m),
+            species,
+            layers_by_place: BoxIndex::new(layers.iter().map(Layer::bounds)),
+            blockers_by_place: BoxIndex::new(blockers.iter().map(Blocker::bounds)),
+            greatest_distance_m: layers.iter().map(Layer::least_distance_m).fold(0.0, f64::max),
+            layers,
+            species_of_stock,
+            blockers,
+        })
+    }
+
+    /// The names of the species, in the order of [`Planted::species`].
+    pub fn species(&self) -> &[String] {
+        &self.species
+    }
+
+    /// Side of a cell, m.
+    pub fn cell_m(&self) -> f32 {
+        self.cell_m as f32
+    }
+
+    /// The least corner (x, z) of a cell, m.
+    pub fn corner_m(&self, cell: IVec2) -> DVec2 {
+        cell.as_dvec2() * self.cell_m
+    }
+
+    /// The cell at a place (x, z), m.
+    pub fn cell_at(&self, place_m: Vec2) -> IVec2 {
+        (place_m.as_dvec2() / self.cell_m).floor().as_ivec2()
+    }
+
+    /// The least and the greatest cell that may hold plants; `None` where nothing grows.
+    pub fn cells(&self) -> Option<[IVec2; 2]> {
+        let boxes = self.layers.iter().map(Layer::bounds);
+        let [min, max] = boxes.reduce(|[min, max], other| [min.min(other[0]), max.max(other[1])])?;
+        Some([min, max].map(|corner| self.cell_at(corner.as_vec2())))
+    }
+
+    /// Fills `planted` with what stands in a cell: the same whatever was planted before. Plants that stand too near to one
+    /// of another cell are compared with it, so `ground` is asked about places as far outside the cell as the greatest
+    /// least distance.
+    pub fn plant(&self, cell: IVec2, ground: &impl Ground, planted: &mut Vec<Planted>) {
+        planted.clear();
+        let corner = self.corner_m(cell);
+        let cell = Square { min: corner, max: corner + self.cell_m };
+        let around = Square { min: cell.min - self.greatest_distance_m, max: cell.max + self.greatest_distance_m };
+        let mut near = Vec::new();
+        self.blockers_by_place.near(around.min, around.max, &mut near);
+        let blockers: Vec<&Blocker> = near.iter().map(|&number| &self.blockers[number as usize]).collect();
+        let free = |at: DVec2| !blockers.iter().any(|blocker| blocker.covers(at));
+        self.layers_by_place.near(around.min, around.max, &mut near);
+
+        let (mut darts, mut candidates) = (Vec::new(), Vec::new());
+        for (order, &number) in near.iter().enumerate() {
+            // Every area has room for some plants, however many crowd into the earlier ones.
+            let most = MOST_CANDIDATES / near.len() * (order + 1);
+            self.layers[number as usize].sow(around, cell, ground, free, &mut darts, &mut candidates, most);
+        }
+        keep_apart(&mut candidates, self.greatest_distance_m);
+        planted.extend(candidates.iter().filter(|one| one.in_cell && one.stays).map(|one| self.grow(one)));
+    }
+
+    fn grow(&self, candidate: &Candidate) -> Planted {
+        let layer = self.layers.partition_point(|layer| layer.number() < candidate.area);
+        let place = candidate.at.as_vec2();
+        Planted::grow(
+            Vec3::new(place.x, candidate.height_m, place.y),
+            self.layers[layer].stock(candidate.stock),
+            self.species_of_stock[layer][candidate.stock as usize],
+            candidate.seed,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests;
