@@ -33,7 +33,7 @@ use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
 /// Nearer to 2 and 3 the power law's integrals diverge.
-const FRACTAL_DIMENSION: RangeInclusive<f64> = 2.02..=2.98;
+pub(super) const FRACTAL_DIMENSION: RangeInclusive<f64> = 2.02..=2.98;
 
 /// How the covariance of a field falls with distance. Lengths are in units of the scale throughout.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect, Serialize, Deserialize)]
@@ -235,7 +235,11 @@ mod tests {
     #[test]
     fn practical_ranges_are_the_known_ones() {
         assert_relative_eq!(CovarianceModel::Exponential.practical_range(), 20f64.ln(), max_relative = 1e-9);
-        assert_relative_eq!(CovarianceModel::DoubleExponential.practical_range(), 20f64.ln().sqrt(), max_relative = 1e-9);
+        assert_relative_eq!(
+            CovarianceModel::DoubleExponential.practical_range(),
+            20f64.ln().sqrt(),
+            max_relative = 1e-9
+        );
         for model in CovarianceModel::ALL {
             assert_relative_eq!(model.correlation(model.practical_range()), 0.05, epsilon = 1e-9);
         }

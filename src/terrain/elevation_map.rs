@@ -218,7 +218,8 @@ mod tests {
             for line in -2..=9 {
                 let (before, after) = (f64::from(line) - 1e-9, f64::from(line) + 1e-9);
                 for across in [0.4, 2.7, 6.2, 8.0] {
-                    for (a, b) in [(place(before, across), place(after, across)), (place(across, before), place(across, after))]
+                    for (a, b) in
+                        [(place(before, across), place(after, across)), (place(across, before), place(across, after))]
                     {
                         assert_relative_eq!(map.height_m(a), map.height_m(b), epsilon = 1e-6);
                         assert!((map.gradient(a) - map.gradient(b)).length() < 1e-6, "{interpolation:?} at {a}");

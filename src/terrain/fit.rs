@@ -1,8 +1,11 @@
 //! Fits covariance models to a variogram by the Levenberg-Marquardt method (Setas et al., section 2.1), and ranks them.
 //!
 //! ```text
-//! minimise sum over classes of ((s^2 (1 - rho(|A h| / scale)) - gamma(h)) / variance)^2
+//! minimise sum over classes of ln^2 ((s^2 (1 - rho(|A h| / scale)) + e) / (gamma(h) + e))       e = variance / 1000
 //! ```
+//!
+//! Logarithms, because ground is seen from near by: what a plain difference calls a good fit follows the long lags alone, and
+//! gives mountains the texture of gravel. Below e a map shows its rounding rather than ground.
 //!
 //! The unknowns are free of units, and cannot leave their domains: the logarithms of the sill over the variance and of the
 //! scale over the longest lag, the logit of a fractal's dimension, and, where the variogram has directions, the logarithm
@@ -10,7 +13,9 @@
 //! tried, because the sum has other minima. All classes weigh the same; their widths grow with distance, so that this is
 //! about the same weight for each octave of lags.
 
-use super::{Anisotropy, CovarianceModel, LagClass, TerrainError, TurningBandsSettings, Variogram};
+use super::{
+    Anisotropy, CovarianceModel, LagClass, TerrainError, TurningBandsSettings, Variogram, covariance::FRACTAL_DIMENSION,
+};
 use bevy::math::DVec2;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, storage::Owned};
@@ -26,6 +31,10 @@ const START_AZIMUTHS: [f64; 2] = [0.0, FRAC_PI_2];
 const FARTHEST: f64 = 9.0;
 /// Scales over the longest lag beyond which a variogram cannot tell them, nor the sill.
 const LONGEST_SCALE: f64 = 2.0;
+/// Of the anisotropy, either way; what [`TurningBandsSettings`] allow.
+const MOST_RATIO: f64 = 100.0;
+/// e of the module's head, over the variance.
+const NOISE: f64 = 1e-3;
 
 /// A model with the parameters that fit a variogram best.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +48,8 @@ pub struct Fit {
     pub deviation_m: f64,
     /// Isotropic where the variogram has fewer than 3 directions.
     pub anisotropy: Anisotropy,
-    /// Root mean square of what the fit leaves of the semivariances, over the variance of the map.
+    /// Root mean square over the classes of the logarithm of fitted over measured semivariance: the relative error, where
+    /// it is small.
     pub residual: f64,
 }
 
@@ -154,13 +164,15 @@ impl<'a> Data<'a> {
             CovarianceModel::Fractal { .. } => CovarianceModel::Fractal { dimension: dimension_of_logit(next()) },
             other => other,
         };
-        let (ratio, azimuth) = if self.directed { (factor(next()), next()) } else { (1.0, 0.0) };
+        let (ratio, azimuth) =
+            if self.directed { (factor(next()).clamp(MOST_RATIO.recip(), MOST_RATIO), next()) } else { (1.0, 0.0) };
         // A ratio below 1 is one above 1 about the other axis.
         let (scale_m, ratio, azimuth) =
             if ratio < 1.0 { (scale_m / ratio, ratio.recip(), azimuth + FRAC_PI_2) } else { (scale_m, ratio, azimuth) };
         let anisotropy = Anisotropy { ratio, azimuth_deg: azimuth.rem_euclid(PI).to_degrees() };
         let mut fit = Fit { model, scale_m, deviation_m, anisotropy, residual: 0.0 };
-        fit.residual = (self.residuals(&fit).map(|value| value * value).sum::<f64>() / self.classes.len() as f64).sqrt();
+        fit.residual =
+            (self.residuals(&fit).map(|value| value * value).sum::<f64>() / self.classes.len() as f64).sqrt();
         fit
     }
 
@@ -170,7 +182,8 @@ impl<'a> Data<'a> {
         let (model, scale_m) = (fit.model, fit.scale_m);
         self.classes.iter().map(move |class| {
             let distance = (stretch * class.lag_m()).length() / scale_m;
-            sill * (1.0 - model.correlation(distance)) - class.semivariance_m2 / self.variance_m2
+            let fitted = (sill * (1.0 - model.correlation(distance))).max(0.0);
+            ((fitted + NOISE) / (class.semivariance_m2 / self.variance_m2 + NOISE)).ln()
         })
     }
 
@@ -179,14 +192,15 @@ impl<'a> Data<'a> {
     }
 }
 
-/// 2 to 3, short of both ends by the share of the domain that the model refuses.
+/// The dimension at the share 1 / (1 + e^-logit) of its domain.
 fn dimension_of_logit(logit: f64) -> f64 {
-    2.02 + 0.96 / (1.0 + (-logit).exp())
+    let (low, high) = (FRACTAL_DIMENSION.start(), FRACTAL_DIMENSION.end());
+    (low + (high - low) / (1.0 + (-logit).exp())).clamp(*low, *high)
 }
 
 fn logit_of_dimension(dimension: f64) -> f64 {
-    let share = (dimension - 2.02) / 0.96;
-    (share / (1.0 - share)).ln()
+    let (low, high) = (FRACTAL_DIMENSION.start(), FRACTAL_DIMENSION.end());
+    ((dimension - low) / (high - dimension)).ln()
 }
 
 struct Problem<'a> {

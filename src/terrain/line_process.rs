@@ -180,7 +180,8 @@ mod tests {
         let line = process(&[(3, 1.0, 0.3), (9, 2.0, 4.0)]);
         let step = 1e-3;
         for coordinate in [-7.3, 0.5, 11.9, 63.7, 1000.1] {
-            let slope = |value: &dyn Fn(f64) -> f64| (value(coordinate + step) - value(coordinate - step)) / (2.0 * step);
+            let slope =
+                |value: &dyn Fn(f64) -> f64| (value(coordinate + step) - value(coordinate - step)) / (2.0 * step);
             let looked_up = slope(&|u| f64::from(line.value(u)));
             assert_relative_eq!(f64::from(line.derivative(coordinate)), looked_up, epsilon = 2e-3);
             assert_relative_eq!(line.exact(coordinate).derivative, slope(&|u| line.exact(u).value), epsilon = 1e-5);

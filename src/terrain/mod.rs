@@ -12,7 +12,7 @@
 //!    several. All are [`Heightfield`]s.
 //!
 //! ```
-//! # #[cfg(any())] // The crate's name is that of whoever compiles this room.
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! use bevy_windwood::terrain::{
 //!     CovarianceModel, ElevationGrid, ElevationScale, Heightfield, TurningBands, Variogram, VariogramSettings, fit_models,
 //! };
@@ -23,6 +23,8 @@
 //! let best = fit_models(&variogram, &CovarianceModel::ALL)?[0];
 //! let ground = TurningBands::new(&best.settings(60.0, 7))?;
 //! println!("{} m", ground.height_m(bevy::math::DVec2::new(1e6, -2e5)));
+//! # Ok(())
+//! # }
 //! ```
 //!
 //! Everything in this room is plain arithmetic without an app.

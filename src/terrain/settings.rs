@@ -163,7 +163,8 @@ mod tests {
 
     #[test]
     fn settings_survive_writing_and_reading() {
-        let settings = TurningBandsSettings { model: CovarianceModel::Fractal { dimension: 2.2 }, ..Default::default() };
+        let settings =
+            TurningBandsSettings { model: CovarianceModel::Fractal { dimension: 2.2 }, ..Default::default() };
         let written = ron::to_string(&settings).unwrap();
         assert_eq!(ron::from_str::<TurningBandsSettings>(&written).unwrap(), settings);
         assert!(ron::from_str::<TurningBandsSettings>("(scale: 3.0)").is_err());

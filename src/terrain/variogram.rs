@@ -8,12 +8,7 @@
 //! does not show. All pairs of samples up to the longest lag are counted: the sum of products comes from one FFT (see
 //! `autocorrelation`), the sums of squares from a table of running sums.
 
-use super::{
-    Drift, ElevationGrid, FoundDrift, TerrainError,
-    autocorrelation::Autocorrelation,
-    drift,
-    error::require,
-};
+use super::{Drift, ElevationGrid, FoundDrift, TerrainError, autocorrelation::Autocorrelation, drift, error::require};
 use bevy::{math::DVec2, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 use std::{f64::consts::PI, ops::RangeInclusive};
@@ -130,10 +125,8 @@ impl Pairs {
         let sides_m = cell_m * DVec2::new(columns as f64 - 1.0, rows as f64 - 1.0);
         // One cell at least, however small the map.
         let longest_m = (longest_lag * sides_m.min_element()).max(cell_m.max_element() * 1.001);
-        let longest = [
-            ((longest_m / cell_m.x) as usize).min(columns - 1),
-            ((longest_m / cell_m.y) as usize).min(rows - 1),
-        ];
+        let longest =
+            [((longest_m / cell_m.x) as usize).min(columns - 1), ((longest_m / cell_m.y) as usize).min(rows - 1)];
         let products = Autocorrelation::new(values, columns, longest[0], longest[1]);
         let squares = RunningSums::new(values, columns);
         Self { columns, rows, longest, longest_m, products, squares }

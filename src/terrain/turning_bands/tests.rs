@@ -77,7 +77,10 @@ fn the_covariance_is_the_model_s_in_every_direction() {
                 let (measured, error) = covariance(&settings, 24, lag);
                 let expected = whole.model_covariance_m2(lag);
                 let allowed = 3.5 * error + 0.02 * settings.deviation_m.powi(2);
-                assert!((measured - expected).abs() < allowed, "{model:?} at {lag}: {measured} +-{error}, not {expected}");
+                assert!(
+                    (measured - expected).abs() < allowed,
+                    "{model:?} at {lag}: {measured} +-{error}, not {expected}"
+                );
             }
         }
     }

@@ -62,7 +62,8 @@ fn a_ridge_varies_across_and_not_along() {
 
 #[test]
 fn the_drift_does_not_count() {
-    let tilted = |tilt: f64| grid(30, 20, DVec2::ONE, |column, row| rugged(column, row) + tilt * f64::from(column + row));
+    let tilted =
+        |tilt: f64| grid(30, 20, DVec2::ONE, |column, row| rugged(column, row) + tilt * f64::from(column + row));
     let settings = VariogramSettings { drift: Drift::Plane, ..Default::default() };
     let estimate = |tilt| Variogram::estimate(&tilted(tilt), &settings).unwrap();
     for (level, slope) in estimate(0.0).classes().iter().zip(estimate(8.0).classes()) {
