@@ -89,7 +89,9 @@ fn real_ground_is_fitted_and_new_ground_of_its_kind_made() {
     let variogram = Variogram::estimate(&real, &VariogramSettings::default()).unwrap();
     let fits = fit_models(&variogram, &CovarianceModel::ALL).unwrap();
     let best = fits[0];
-    assert!(best.residual < 0.05, "{best:?}");
+    // No model has valleys cut by water; a sixth of the semivariance is what they may miss.
+    assert!(best.residual < 0.16, "{best:?}");
+    assert!(fits[7].residual > 2.0 * best.residual, "{fits:?}");
     // Kilometres: neither the cell nor what a fit of metres stops at.
     assert!(fits.iter().all(|fit| (1e3..3e4).contains(&fit.scale_m)), "{fits:?}");
 
