@@ -1,7 +1,7 @@
 //! Fits covariance models to a variogram by the Levenberg-Marquardt method (Setas et al., section 2.1), and ranks them.
 //!
 //! ```text
-//! minimise sum over classes of ln^2 ((s^2 (1 - rho(|A h| / scale)) + e) / (gamma(h) + e))       e = variance / 1000
+//! minimise sum over classes of w(h) ln^2 ((s^2 (1 - rho(|A h| / scale)) + e) / (gamma(h) + e))       e = variance / 1000
 //! ```
 //!
 //! Logarithms, because ground is seen from near by: what a plain difference calls a good fit follows the long lags alone, and
@@ -10,8 +10,8 @@
 //! The unknowns are free of units, and cannot leave their domains: the logarithms of the sill over the variance and of the
 //! scale over the longest lag, the logit of a fractal's dimension, and, where the variogram has directions, the logarithm
 //! of the anisotropy and its azimuth. (A fit in metres and square metres stops at the wrong scale.) Several starts are
-//! tried, because the sum has other minima. All classes weigh the same; their widths grow with distance, so that this is
-//! about the same weight for each octave of lags.
+//! tried, because the sum has other minima. A class weighs as much as its width in ln h, so that every octave of lags
+//! weighs the same.
 
 use super::{
     Anisotropy, CovarianceModel, LagClass, TerrainError, TurningBandsSettings, Variogram, covariance::FRACTAL_DIMENSION,
@@ -48,7 +48,7 @@ pub struct Fit {
     pub deviation_m: f64,
     /// Isotropic where the variogram has fewer than 3 directions.
     pub anisotropy: Anisotropy,
-    /// Root mean square over the classes of the logarithm of fitted over measured semivariance: the relative error, where
+    /// Weighted root mean square over the classes of the logarithm of fitted over measured semivariance: the relative error, where
     /// it is small.
     pub residual: f64,
 }
@@ -118,6 +118,8 @@ struct Data<'a> {
     directed: bool,
     variance_m2: f64,
     longest_m: f64,
+    /// Square roots of the weights, whose sum is 1.
+    weights: Vec<f64>,
 }
 
 impl<'a> Data<'a> {
@@ -127,7 +129,8 @@ impl<'a> Data<'a> {
         let mut azimuths: Vec<f64> = classes.iter().map(|class| class.azimuth).collect();
         azimuths.dedup();
         // Two directions cannot tell the azimuth.
-        Self { classes, model, directed: azimuths.len() > 2, variance_m2: variogram.variance_m2(), longest_m }
+        let (directed, variance_m2) = (azimuths.len() > 2, variogram.variance_m2());
+        Self { classes, model, directed, variance_m2, longest_m, weights: weights(classes) }
     }
 
     fn starts(&self) -> Vec<DVector<f64>> {
@@ -171,25 +174,37 @@ impl<'a> Data<'a> {
             if ratio < 1.0 { (scale_m / ratio, ratio.recip(), azimuth + FRAC_PI_2) } else { (scale_m, ratio, azimuth) };
         let anisotropy = Anisotropy { ratio, azimuth_deg: azimuth.rem_euclid(PI).to_degrees() };
         let mut fit = Fit { model, scale_m, deviation_m, anisotropy, residual: 0.0 };
-        fit.residual =
-            (self.residuals(&fit).map(|value| value * value).sum::<f64>() / self.classes.len() as f64).sqrt();
+        fit.residual = self.residuals(&fit).map(|value| value * value).sum::<f64>().sqrt();
         fit
     }
 
+    /// Logarithms of fitted over measured semivariance, weighted.
     fn residuals(&self, fit: &Fit) -> impl Iterator<Item = f64> {
         let stretch = fit.anisotropy.stretch();
         let sill = fit.deviation_m.powi(2) / self.variance_m2;
         let (model, scale_m) = (fit.model, fit.scale_m);
-        self.classes.iter().map(move |class| {
+        self.classes.iter().zip(&self.weights).map(move |(class, weight)| {
             let distance = (stretch * class.lag_m()).length() / scale_m;
             let fitted = (sill * (1.0 - model.correlation(distance))).max(0.0);
-            ((fitted + NOISE) / (class.semivariance_m2 / self.variance_m2 + NOISE)).ln()
+            weight * ((fitted + NOISE) / (class.semivariance_m2 / self.variance_m2 + NOISE)).ln()
         })
     }
 
     fn residuals_at(&self, unknowns: &DVector<f64>) -> DVector<f64> {
         DVector::from_iterator(self.classes.len(), self.residuals(&self.fit(unknowns)))
     }
+}
+
+/// The square root of each class's width in ln h, that from the class before it in its direction, over the sum of all.
+fn weights(classes: &[LagClass]) -> Vec<f64> {
+    let width = |index: usize| {
+        let (before, class) = (classes.get(index.checked_sub(1)?)?, classes.get(index)?);
+        (before.azimuth == class.azimuth).then(|| (class.distance_m / before.distance_m).ln())
+    };
+    // The first in a direction is as wide as the second.
+    let widths: Vec<f64> = (0..classes.len()).map(|index| width(index).or(width(index + 1)).unwrap_or(1.0)).collect();
+    let sum: f64 = widths.iter().sum();
+    widths.iter().map(|width| (width / sum).sqrt()).collect()
 }
 
 /// The dimension at the share 1 / (1 + e^-logit) of its domain.

