@@ -33,7 +33,7 @@ pub(super) const PERIOD_SCALES: f64 = 128.0;
 pub struct TurningBandsSettings {
     /// How the covariance falls with distance.
     pub model: CovarianceModel,
-    /// The length 1 / b in the covariance model: the distance x = 1, the range of the spherical model, 1 / w_min of the
+    /// The length 1 / b in the covariance model: the distance x = 1, the range of the spherical model, 1 / `w_min` of the
     /// fractal. Along the longer axis where the field is anisotropic. units: m, domain: \[0.001, 10^7\].
     pub scale_m: f64,
     /// Standard deviation of the elevation; its square is the sill. units: m, domain: \[0, 10^5\].
@@ -47,9 +47,8 @@ pub struct TurningBandsSettings {
     pub finest_wavelength_m: f64,
     /// Whether the ground is drawn out in one direction.
     pub anisotropy: Anisotropy,
-    /// L, the lines that the field turns about (equation 1). Few lines show as bands: where a model is
-    /// smooth, 16 still show to a trained eye in hill shading, and 64 do not. The time to read a place grows with them.
-    /// domain: \[4, 256\].
+    /// L, the lines that the field turns about (equation 1). Hill shading shows 16 as faint straight streaks, and hardly
+    /// shows 64; the time to read a place grows with them. domain: \[4, 256\].
     pub lines: u32,
     /// M, the harmonics of each line (equation 3). They cost nothing when the field is read. domain: \[8, 16384\].
     pub harmonics: u32,
