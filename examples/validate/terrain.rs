@@ -79,8 +79,8 @@ fn correlation(model: CovarianceModel, x: f64) -> f64 {
     }
 }
 
-/// int f(w) J0(w x) dw from `lowest`, by the midpoint rule in w = lowest + sinh(v), with J0 as the mean of cos(w x cos a)
-/// over directions a.
+/// int f(w) J0(w x) dw from `lowest`, by the midpoint rule in w = lowest + sinh(v), with J0 as the mean of
+/// cos(w x cos a) over directions a.
 fn by_spectrum(x: f64, lowest: f64, density: impl Fn(f64) -> f64) -> f64 {
     const STEPS: u32 = 1500;
     const HIGHEST: f64 = 9.0;

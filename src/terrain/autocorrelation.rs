@@ -8,8 +8,8 @@
 
 use rustfft::{FftPlanner, num_complex::Complex};
 
-/// The products of a grid, for lags from -`longest_column` to `longest_column` and from 0 to `longest_row`; those of the
-/// other half are the same with both signs turned.
+/// The products of a grid, for lags from -`longest_column` to `longest_column` and from 0 to `longest_row`; those of
+/// the other half are the same with both signs turned.
 pub(super) struct Autocorrelation {
     longest_column: usize,
     sums: Vec<f64>,

@@ -5,8 +5,9 @@
 //! int_0^inf t^-(q+1) (1 - J0(t)) dt = -Gamma(-q/2) / (2^(q+1) Gamma(1 + q/2))            0 < q < 2
 //! ```
 //!
-//! The first is two integrations by parts, with (t J1)' = t J0 and J0' = -J1; repeated, it is an asymptotic series. Up to
-//! [`SERIES_LIMIT`] the power series of J0 is integrated instead, term by term. Where they meet, both are right to 1e-8.
+//! The first is two integrations by parts, with (t J1)' = t J0 and J0' = -J1; repeated, it is an asymptotic series. Up
+//! to [`SERIES_LIMIT`] the power series of J0 is integrated instead, term by term. Where they meet, both are right to
+//! 1e-8.
 
 use puruspe::{Jn, gamma};
 

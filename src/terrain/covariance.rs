@@ -18,8 +18,8 @@
 //! cos(w z) dw (equation 4: S1 = s^2 f / 2). The fractal is equation 5, f ~ w^-(7-2D). Its upper limit is the finest
 //! wavelength of a field, which all models have; its lower limit is 1 / scale.
 //!
-//! The paper's names Simple Exponential, Double Exponential and Spherical are clear. Its Bessel 1, Bessel 2 and Telis are
-//! taken to be Whittle A, Whittle B and the hole exponential; the table of Mantoglou & Wilson was not available to
+//! The paper's names Simple Exponential, Double Exponential and Spherical are clear. Its Bessel 1, Bessel 2 and Telis
+//! are taken to be Whittle A, Whittle B and the hole exponential; the table of Mantoglou & Wilson was not available to
 //! confirm this.
 
 use super::{

@@ -91,8 +91,8 @@ impl ElevationGrid {
     /// Reads a PNG with 16 bits of grey.
     ///
     /// # Errors
-    /// [`TerrainError::Format`] for a PNG of another kind, [`TerrainError::Unreadable`] for one that is damaged, cut off
-    /// or no PNG, and those of [`ElevationGrid::new`] and of a scale outside its domain.
+    /// [`TerrainError::Format`] for a PNG of another kind, [`TerrainError::Unreadable`] for one that is damaged, cut
+    /// off or no PNG, and those of [`ElevationGrid::new`] and of a scale outside its domain.
     pub fn from_png(bytes: &[u8], scale: &ElevationScale) -> Result<Self, TerrainError> {
         scale.validate()?;
         let unreadable = |error: image::ImageError| TerrainError::Unreadable { reason: error.to_string() };

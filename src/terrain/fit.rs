@@ -1,17 +1,17 @@
 //! Fits covariance models to a variogram by the Levenberg-Marquardt method (Setas et al., section 2.1), and ranks them.
 //!
 //! ```text
-//! minimise sum over classes of w(h) ln^2 ((s^2 (1 - rho(|A h| / scale)) + e) / (gamma(h) + e))       e = variance / 1000
+//! minimise sum over classes of w(h) ln^2 ((s^2 (1 - rho(|A h| / scale)) + e) / (gamma(h) + e))   e = variance / 1000
 //! ```
 //!
-//! Logarithms, because ground is seen from near by: what a plain difference calls a good fit follows the long lags alone, and
-//! gives mountains the texture of gravel. Below e a map shows its rounding rather than ground.
+//! Logarithms, because ground is seen from near by: what a plain difference calls a good fit follows the long lags
+//! alone, and gives mountains the texture of gravel. Below e a map shows its rounding rather than ground.
 //!
-//! The unknowns are free of units, and cannot leave their domains: the logarithms of the sill over the variance and of the
-//! scale over the longest lag, the logit of a fractal's dimension, and, where the variogram has directions, the logarithm
-//! of the anisotropy and its azimuth. (A fit in metres and square metres stops at the wrong scale.) Several starts are
-//! tried, because the sum has other minima. A class weighs as much as its width in ln h, so that every octave of lags
-//! weighs the same.
+//! The unknowns are free of units, and cannot leave their domains: the logarithms of the sill over the variance and of
+//! the scale over the longest lag, the logit of a fractal's dimension, and, where the variogram has directions, the
+//! logarithm of the anisotropy and its azimuth. (A fit in metres and square metres stops at the wrong scale.) Several
+//! starts are tried, because the sum has other minima. A class weighs as much as its width in ln h, so that every
+//! octave of lags weighs the same.
 
 use super::{
     Anisotropy, CovarianceModel, LagClass, TerrainError, TurningBandsSettings, Variogram, covariance::FRACTAL_DIMENSION,
@@ -48,8 +48,8 @@ pub struct Fit {
     pub deviation_m: f64,
     /// Isotropic where the variogram has fewer than 3 directions.
     pub anisotropy: Anisotropy,
-    /// Weighted root mean square over the classes of the logarithm of fitted over measured semivariance: the relative error, where
-    /// it is small.
+    /// Weighted root mean square over the classes of the logarithm of fitted over measured semivariance: the relative
+    /// error, where it is small.
     pub residual: f64,
 }
 
@@ -81,7 +81,8 @@ impl Fit {
     }
 }
 
-/// Fits every one of `models` to a variogram; the best comes first. A fractal's dimension is fitted too, whatever it is.
+/// Fits every one of `models` to a variogram; the best comes first. A fractal's dimension is fitted too, whatever it
+/// is.
 ///
 /// # Errors
 /// [`TerrainError::OutOfRange`] where the variogram has fewer classes than a model has unknowns.

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 /// Ground: an elevation above every place of the plane.
 ///
-/// A place is (x, z) in the world's horizontal plane, in metres, +x east and +z south; in double precision, so that ground
-/// stays smooth far from the origin. A coordinate that is not finite counts as 0, one beyond 10^12 m as that. Reading allocates nothing, and the same
-/// place always has the same ground, so that chunks can be filled in any order on any threads.
+/// A place is (x, z) in the world's horizontal plane, in metres, +x east and +z south; in double precision, so that
+/// ground stays smooth far from the origin. A coordinate that is not finite counts as 0, one beyond 10^12 m as that.
+/// Reading allocates nothing, and the same place always has the same ground, so that chunks can be filled in any order
+/// on any threads.
 pub trait Heightfield: Send + Sync {
     /// Elevation at a place, m.
     fn height_m(&self, place: DVec2) -> f64;

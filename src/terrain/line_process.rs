@@ -4,19 +4,19 @@
 //! z(u) = sum_k a_k cos(2 pi n_k u / N + phi_k)          n_k whole, a_k = s sqrt(2 p_k / L)
 //! ```
 //!
-//! u counts samples. The process has a period of N samples, because every frequency is rounded to a whole number of waves
-//! in it. So one table of a period serves the whole line, however far away a place is, and needs no seams.
+//! u counts samples. The process has a period of N samples, because every frequency is rounded to a whole number of
+//! waves in it. So one table of a period serves the whole line, however far away a place is, and needs no seams.
 //!
-//! The alternatives: tables for each chunk allow any frequency, but make a single query far from any chunk as dear as the
-//! sum itself, and neighbours agree only to the error of the lookup. Recurrences that turn phases from point to point
-//! serve the rows of a grid alone and add up their rounding. What the period costs is that each line repeats after some
-//! 30 ranges or more, when all other lines have moved on by another share of their periods: the field itself correlates
-//! with itself again by about one part in L, and nowhere repeats.
+//! The alternatives: tables for each chunk allow any frequency, but make a single query far from any chunk as dear as
+//! the sum itself, and neighbours agree only to the error of the lookup. Recurrences that turn phases from point to
+//! point serve the rows of a grid alone and add up their rounding. What the period costs is that each line repeats
+//! after some 30 ranges or more, when all other lines have moved on by another share of their periods: the field itself
+//! correlates with itself again by about one part in L, and nowhere repeats.
 //!
-//! The table holds coefficients of a cubic B-spline, so that ground has continuous curvature. They come from the harmonics
-//! by one inverse FFT, each divided by the spline's own gain, `beta = (2 + cos x) / 3` at `x = 2 pi n / N`: at the samples
-//! the spline has the exact value. Between them it holds, beside each wave, its images at x + 2 pi m, with amplitudes
-//! sinc^4(x/2 + pi m) / beta.
+//! The table holds coefficients of a cubic B-spline, so that ground has continuous curvature. They come from the
+//! harmonics by one inverse FFT, each divided by the spline's own gain, `beta = (2 + cos x) / 3` at `x = 2 pi n / N`:
+//! at the samples the spline has the exact value. Between them it holds, beside each wave, its images at x + 2 pi m,
+//! with amplitudes sinc^4(x/2 + pi m) / beta.
 
 use rustfft::{FftPlanner, num_complex::Complex};
 use std::f64::consts::{PI, TAU};

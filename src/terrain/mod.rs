@@ -6,10 +6,10 @@
 //! 1. A [`CovarianceModel`] says how alike the elevations of two places are, by their distance.
 //! 2. [`TurningBands`] draws ground with that covariance: the sum of one-dimensional processes along lines in the plane
 //!    (algorithm 1), without end and without a grid.
-//! 3. A [`Variogram`] measures the covariance of a real map ([`ElevationGrid`]), and [`fit_models`] finds the models that
-//!    have it (Levenberg-Marquardt), so that new ground of the same kind can be made ([`Fit::settings`]).
-//! 4. [`ElevationMap`] is the real ground itself, [`SplineGround`] ground formed by control points, [`Layers`] the sum of
-//!    several. All are [`Heightfield`]s.
+//! 3. A [`Variogram`] measures the covariance of a real map ([`ElevationGrid`]), and [`fit_models`] finds the models
+//!    that have it (Levenberg-Marquardt), so that new ground of the same kind can be made ([`Fit::settings`]).
+//! 4. [`ElevationMap`] is the real ground itself, [`SplineGround`] ground formed by control points, [`Layers`] the sum
+//!    of several. All are [`Heightfield`]s.
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {

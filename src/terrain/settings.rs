@@ -33,8 +33,8 @@ pub(super) const PERIOD_SCALES: f64 = 128.0;
 pub struct TurningBandsSettings {
     /// How the covariance falls with distance.
     pub model: CovarianceModel,
-    /// The length 1 / b in the covariance model: the distance x = 1, the range of the spherical model, 1 / `w_min` of the
-    /// fractal. Along the longer axis where the field is anisotropic. units: m, domain: \[0.001, 10^7\].
+    /// The length 1 / b in the covariance model: the distance x = 1, the range of the spherical model, 1 / `w_min` of
+    /// the fractal. Along the longer axis where the field is anisotropic. units: m, domain: \[0.001, 10^7\].
     pub scale_m: f64,
     /// Standard deviation of the elevation; its square is the sill. units: m, domain: \[0, 10^5\].
     pub deviation_m: f64,
@@ -42,13 +42,14 @@ pub struct TurningBandsSettings {
     pub mean_m: f64,
     /// Waves shorter than this are left out, and their variance with them (see
     /// [`TurningBands::resolved_fraction`](super::TurningBands::resolved_fraction)). About two cells of the finest mesh
-    /// that will be drawn; along the longer axis where the field is anisotropic. units: m, domain: \[0.001, `scale_m`\],
-    /// and such that the tables, lines x 2^ceil(log2(512 `scale_m` / `finest_wavelength_m`)), hold at most 2^24 samples.
+    /// that will be drawn; along the longer axis where the field is anisotropic. units: m, domain: \[0.001,
+    /// `scale_m`\], and such that the tables, lines x 2^ceil(log2(512 `scale_m` / `finest_wavelength_m`)), hold at most
+    /// 2^24 samples.
     pub finest_wavelength_m: f64,
     /// Whether the ground is drawn out in one direction.
     pub anisotropy: Anisotropy,
-    /// L, the lines that the field turns about (equation 1). Hill shading shows 16 as faint straight streaks, and hardly
-    /// shows 64; the time to read a place grows with them. domain: \[4, 256\].
+    /// L, the lines that the field turns about (equation 1). Hill shading shows 16 as faint straight streaks, and
+    /// hardly shows 64; the time to read a place grows with them. domain: \[4, 256\].
     pub lines: u32,
     /// M, the harmonics of each line (equation 3). They cost nothing when the field is read. domain: \[8, 16384\].
     pub harmonics: u32,
@@ -90,7 +91,8 @@ impl Default for Anisotropy {
 }
 
 impl Anisotropy {
-    /// The matrix A into coordinates in which the ground is isotropic: its axis keeps its length, what lies across grows.
+    /// The matrix A into coordinates in which the ground is isotropic: its axis keeps its length, what lies across
+    /// grows.
     pub(super) fn stretch(&self) -> DMat2 {
         let axis = DVec2::from_angle(self.azimuth_deg.to_radians());
         let to_axes = DMat2::from_cols(axis, axis.perp()).transpose();

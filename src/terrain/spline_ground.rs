@@ -38,8 +38,8 @@ pub struct SplineGroundSettings {
     pub north_m: f64,
     /// Elevation of the control points outside all patches. units: m, domain: \[-10^5, 10^5\].
     pub base_m: f32,
-    /// The patches. Where they overlap, the later one's points hold. The rectangle around all of them holds at most 2^22
-    /// points.
+    /// The patches. Where they overlap, the later one's points hold. The rectangle around all of them holds at most
+    /// 2^22 points.
     pub patches: Vec<SplinePatch>,
 }
 

@@ -1,13 +1,13 @@
 //! Strata of the spectrum: where the harmonics of a line process take their frequencies from.
 //!
-//! The paper spaces the frequencies of equation 3 evenly, which loses the tail of the spectrum. Here the spectrum is cut
-//! into M strata, and each harmonic draws one frequency from its stratum by the inverse of the distribution F, with
+//! The paper spaces the frequencies of equation 3 evenly, which loses the tail of the spectrum. Here the spectrum is
+//! cut into M strata, and each harmonic draws one frequency from its stratum by the inverse of the distribution F, with
 //! amplitude sqrt(2 p), p the stratum's share of the variance. The variance is then right in every line, and the
 //! covariance is unbiased.
 //!
 //! Strata of equal share, p = 1/M, would give a heavy tail to one or two harmonics: single ripples, seen from close by.
-//! Strata of equal width in log w would waste most harmonics where there is no variance. So strata are equal in the mean
-//! of both measures.
+//! Strata of equal width in log w would waste most harmonics where there is no variance. So strata are equal in the
+//! mean of both measures.
 
 use super::CovarianceModel;
 use super::covariance::bisect;

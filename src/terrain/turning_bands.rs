@@ -7,8 +7,8 @@
 //!
 //! The L lines are spread evenly over the half circle (a line and its opposite are one) and turned together by a random
 //! angle. The mean over evenly spread directions equals that over the circle for all waves up to about 2 L radians per
-//! lag, and the random turn makes it right for all on average over seeds. Anisotropic ground is isotropic ground seen in
-//! coordinates that are stretched across its axis.
+//! lag, and the random turn makes it right for all on average over seeds. Anisotropic ground is isotropic ground seen
+//! in coordinates that are stretched across its axis.
 
 use super::{
     Heightfield, TerrainError, TurningBandsSettings,
