@@ -1,0 +1,60 @@
+//! The ground: random fields with the covariance of real terrain, maps, and surfaces formed by hand.
+//!
+//! After Setas et al., *Dynamic simulation of natural environments* (section 2.1), and Zaharia, *Procedural modeling of
+//! natural phenomena* (section 2.4):
+//!
+//! 1. A [`CovarianceModel`] says how alike the elevations of two places are, by their distance.
+//! 2. [`TurningBands`] draws ground with that covariance: the sum of one-dimensional processes along lines in the plane
+//!    (algorithm 1), without end and without a grid.
+//! 3. A [`Variogram`] measures the covariance of a real map ([`ElevationGrid`]), and [`fit_models`] finds the models
+//!    that have it (Levenberg-Marquardt), so that new ground of the same kind can be made ([`Fit::settings`]).
+//! 4. [`ElevationMap`] is the real ground itself, [`SplineGround`] ground formed by control points, [`Layers`] the sum
+//!    of several. All are [`Heightfield`]s.
+//!
+//! ```
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use bevy_windwood::terrain::{
+//!     CovarianceModel, ElevationGrid, ElevationScale, Heightfield, TurningBands, Variogram, VariogramSettings, fit_models,
+//! };
+//!
+//! let scale = ElevationScale { cell_x_m: 233.0, cell_z_m: 234.0, ..Default::default() };
+//! let map = ElevationGrid::from_png(&std::fs::read("assets/terrain/rmnp-dem-16bit.png")?, &scale)?;
+//! let variogram = Variogram::estimate(&map, &VariogramSettings::default())?;
+//! let best = fit_models(&variogram, &CovarianceModel::ALL)?[0];
+//! let ground = TurningBands::new(&best.settings(60.0, 7))?;
+//! println!("{} m", ground.height_m(bevy::math::DVec2::new(1e6, -2e5)));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Everything in this room is plain arithmetic without an app.
+
+mod autocorrelation;
+mod bessel_integrals;
+mod covariance;
+mod drift;
+mod elevation_file;
+mod elevation_grid;
+mod elevation_map;
+mod error;
+mod fit;
+mod heightfield;
+mod line_process;
+mod settings;
+mod spline_ground;
+mod strata;
+mod turning_bands;
+mod variogram;
+
+pub use covariance::CovarianceModel;
+pub use drift::{Drift, FoundDrift};
+pub use elevation_file::{ElevationScale, RawSample};
+pub use elevation_grid::ElevationGrid;
+pub use elevation_map::{ElevationMap, Interpolation, MapPlacement};
+pub use error::TerrainError;
+pub use fit::{Fit, fit_model, fit_models};
+pub use heightfield::{Heightfield, Layers};
+pub use settings::{Anisotropy, TurningBandsSettings};
+pub use spline_ground::{SplineGround, SplineGroundSettings, SplinePatch};
+pub use turning_bands::TurningBands;
+pub use variogram::{LagClass, Variogram, VariogramSettings};
