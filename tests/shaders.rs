@@ -28,7 +28,7 @@ fn the_times_of_a_leaf_are_the_same_in_both_languages() {
         let line = text.lines().find(|line| line.starts_with(&format!("const {name}: f32"))).expect("it is there");
         line.split('=').nth(1).expect("it has a value").trim().trim_end_matches(';').parse().expect("a number")
     };
-    for name in ["DROP", "YOUTH"] {
+    for name in ["DROP", "YOUTH", "DRIFT"] {
         assert_eq!(value(code, name), value(shader, name));
     }
 }

@@ -69,10 +69,14 @@ pub struct LeafState {
     pub youth: f32,
     /// How much of it is that of autumn.
     pub autumn: f32,
+    /// Whether it has fallen so lately that its leaves are still seen drifting down now and then.
+    pub drifting: bool,
 }
 
 /// How long a cluster takes to fall, as a share of the year: five days.
 const DROP: f32 = 0.014;
+/// How long after that some of its leaves are still in the air, as a share of the year: two weeks.
+const DRIFT: f32 = 0.04;
 /// How long leaves stay light after they have unfolded, as a share of the year: seven weeks.
 const YOUTH: f32 = 0.13;
 
@@ -97,7 +101,7 @@ impl Phenology {
         let youth = 1.0 - smoothstep(self.flush, self.flush + YOUTH, own);
         if self.evergreen {
             let unfolding = smoothstep(self.flush - 0.5 * self.flush_length, self.flush, own);
-            return LeafState { size: 1.0, youth: youth * unfolding, autumn: 0.0 };
+            return LeafState { size: 1.0, youth: youth * unfolding, autumn: 0.0, drifting: false };
         }
         let half = 0.5 * self.flush_length;
         let unfolded = smoothstep(self.flush - half, self.flush + half, own);
@@ -108,6 +112,7 @@ impl Phenology {
             size: unfolded * (1.0 - smoothstep(falls, falls + DROP, year)),
             youth,
             autumn: smoothstep(self.turn - half, self.turn + half, own),
+            drifting: (falls + DROP..falls + DROP + DRIFT).contains(&year),
         }
     }
 }
@@ -137,6 +142,19 @@ mod tests {
         let summer = oak.leaves(0.6, 0.0, 0.5);
         assert_eq!((summer.youth, summer.autumn), (0.0, 0.0));
         assert!((oak.leaves(oak.turn, 0.0, 0.5).autumn - 0.5).abs() < 1e-3);
+    }
+
+    #[test]
+    fn leaves_are_in_the_air_only_in_autumn() {
+        let oak = Phenology::default();
+        let share = |year: f32| {
+            let clusters = (0..200).map(|rank| oak.leaves(year, 0.0, rank as f32 / 199.0));
+            clusters.filter(|leaves| leaves.drifting).inspect(|leaves| assert_eq!(leaves.size, 0.0)).count()
+        };
+        assert!(share(oak.fall) > 50);
+        for year in [0.0, 0.3, 0.6, 0.999] {
+            assert_eq!(share(year), 0, "at {year}");
+        }
     }
 
     #[test]

@@ -23,6 +23,8 @@ struct LeafState {
     size: f32,
     youth: f32,
     autumn: f32,
+    // Whether it has fallen so lately that its leaves still drift down now and then.
+    drifting: bool,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(105) var<uniform> phenology: Phenology;
@@ -30,12 +32,31 @@ struct LeafState {
 // `DROP` and `YOUTH` of `tree/phenology.rs`; a test holds them equal.
 const DROP: f32 = 0.014;
 const YOUTH: f32 = 0.13;
+const DRIFT: f32 = 0.04;
+
+// A leaf in the air: how fast it sinks, m/s, how much of the wind's speed it takes, how far it may drift, m (trees are
+// culled by a box around them), how often it is seen, s (a whole part of the flutter's period), and its size.
+const SINK_M_S: f32 = 1.3;
+const CARRIED: f32 = 0.25;
+const FARTHEST_M: f32 = 5.0;
+const CYCLE_S: f32 = 64.0;
+const LEAF_SIZE: f32 = 0.22;
+
+// Where a leaf is that has come off: in x, y, z the way from where it hung, in w its size, 0 while it is not seen.
+fn drift(wind: vec3<f32>, height_m: f32, time_s: f32, phase: f32) -> vec4<f32> {
+    let flown_s = fract(time_s / CYCLE_S + 7.0 * phase) * CYCLE_S;
+    let sunk_m = SINK_M_S * flown_s;
+    let swing = 0.35 * vec3(sin(2.1 * flown_s + 40.0 * phase), 0.2 * sin(4.2 * flown_s), cos(1.7 * flown_s + 23.0 * phase));
+    let blown = wind * (CARRIED * flown_s);
+    let way = blown * min(1.0, FARTHEST_M / max(length(blown), 1e-3)) + swing * min(flown_s, 1.0);
+    return vec4(way - vec3(0.0, sunk_m, 0.0), select(0.0, LEAF_SIZE, sunk_m < height_m));
+}
 
 fn leaves(year: f32, lag: f32, rank: f32) -> LeafState {
     let own = year + phenology.patchiness * lag;
     let youth = 1.0 - smoothstep(phenology.flush, phenology.flush + YOUTH, own);
     if phenology.evergreen > 0.5 {
-        return LeafState(1.0, youth * smoothstep(phenology.flush - 0.5 * phenology.flush_length, phenology.flush, own), 0.0);
+        return LeafState(1.0, youth * smoothstep(phenology.flush - 0.5 * phenology.flush_length, phenology.flush, own), 0.0, false);
     }
     let flush = 0.5 * phenology.flush_length;
     let unfolded = smoothstep(phenology.flush - flush, phenology.flush + flush, own);
@@ -45,6 +66,7 @@ fn leaves(year: f32, lag: f32, rank: f32) -> LeafState {
         unfolded * (1.0 - smoothstep(falls, falls + DROP, year)),
         youth,
         smoothstep(phenology.turn - turn, phenology.turn + turn, own),
+        year >= falls + DROP && year < falls + DROP + DRIFT,
     );
 }
 

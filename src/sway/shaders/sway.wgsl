@@ -75,8 +75,14 @@ fn swayed(in: Vertex, tag: u32, tree: beam::TreeRow, first_pose: u32, leaf_time_
     let wind = poses[first_pose + tree.first_pose + tree.beam_count].tip_angle.xyz;
     let turn = leaf::turn(beam::rotate(carried.rotation, in.axis.xyz), wind, leaf_time_s, in.sway.z);
     let rotation = beam::then(carried.rotation, turn);
-    let reach = (in.position - in.anchor.xyz) * state_of(in, tag).size;
-    return beam::Motion(carried.position + beam::rotate(rotation, reach), rotation);
+    let state = state_of(in, tag);
+    let reach = in.position - in.anchor.xyz;
+    if state.drifting {
+        let way = season::drift(wind, carried.position.y, leaf_time_s, in.sway.z);
+        let tumbled = beam::then(rotation, leaf::from_scaled_axis(vec3(0.9, 0.3, 0.5) * (2.5 * way.y)));
+        return beam::Motion(carried.position + way.xyz + beam::rotate(tumbled, reach * way.w), tumbled);
+    }
+    return beam::Motion(carried.position + beam::rotate(rotation, reach * state.size), rotation);
 #else
     return beam::carry(row, pose, in.sway.y, in.position);
 #endif
