@@ -27,15 +27,21 @@
 //! | [`dynamics`] | cantilevers, oscillators, load bases, response tables, poses; no ECS | nobody |
 //! | [`tree`] | species, growth, meshes, [`Tree`](tree::Tree) | dynamics |
 //! | [`sway`] | trees in the wind, on the processor and in shaders | all three |
+//! | [`grass`] | meadows that bend in the wind, [`GrassPatch`](grass::GrassPatch) | sway |
+//! | [`fire`] | fires that lean with it and give light, [`Fire`](fire::Fire) | sway, wind |
 
 mod schedule;
+mod setting;
 
 pub mod dynamics;
+pub mod fire;
+pub mod grass;
 pub mod sway;
 pub mod tree;
 pub mod wind;
 
 pub use schedule::WindwoodSystems;
+pub use setting::SettingError;
 
 use bevy::app::{PluginGroup, PluginGroupBuilder};
 
@@ -43,6 +49,8 @@ use bevy::app::{PluginGroup, PluginGroupBuilder};
 pub mod prelude {
     pub use crate::{
         WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
+        fire::{Fire, FireLook, FireShape},
+        grass::{GrassGround, GrassLook, GrassPatch, GrassResponse, Sward, Tuft},
         sway::{ActiveSway, SwaySettings},
         tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Species, Tree, TreeBeams, TreeLeaves},
         wind::{ActiveWind, Wind, WindCell, WindClock},
@@ -56,7 +64,11 @@ impl PluginGroup for WindwoodPlugins {
     fn build(self) -> PluginGroupBuilder {
         let group = PluginGroupBuilder::start::<Self>().add_group(WindwoodMinimalPlugins);
         #[cfg(feature = "render")]
-        let group = group.add(sway::SwayDrawPlugin).add(wind::WindGizmoPlugin);
+        let group = group
+            .add(sway::SwayDrawPlugin)
+            .add(grass::GrassDrawPlugin)
+            .add(fire::FireDrawPlugin)
+            .add(wind::WindGizmoPlugin);
         group
     }
 }
@@ -67,6 +79,11 @@ pub struct WindwoodMinimalPlugins;
 
 impl PluginGroup for WindwoodMinimalPlugins {
     fn build(self) -> PluginGroupBuilder {
-        PluginGroupBuilder::start::<Self>().add(wind::WindPlugin).add(tree::TreePlugin).add(sway::SwayPlugin)
+        PluginGroupBuilder::start::<Self>()
+            .add(wind::WindPlugin)
+            .add(tree::TreePlugin)
+            .add(sway::SwayPlugin)
+            .add(grass::GrassPlugin)
+            .add(fire::FirePlugin)
     }
 }

@@ -6,12 +6,18 @@ use std::{
 };
 
 /// A room and the rooms it may import. A room that is not here may not exist.
-const MAY_KNOW: [(&str, &[&str]); 4] =
-    [("wind", &[]), ("dynamics", &[]), ("tree", &["dynamics"]), ("sway", &["tree", "wind", "dynamics"])];
+const MAY_KNOW: [(&str, &[&str]); 6] = [
+    ("wind", &[]),
+    ("dynamics", &[]),
+    ("tree", &["dynamics"]),
+    ("sway", &["tree", "wind", "dynamics"]),
+    ("grass", &["sway"]),
+    ("fire", &["sway", "wind"]),
+];
 
-/// Files that glue a room to the engine. All others of `wind`, `dynamics` and `tree` are pure: they can be read beside the
+/// Files that glue a room to the engine. All others but those of `sway` are pure: they can be read beside the
 /// paper, and know no entities, systems or apps.
-const GLUE: [&str; 10] = [
+const GLUE: [&str; 20] = [
     "wind/cells.rs",
     "wind/clock.rs",
     "wind/current.rs",
@@ -21,6 +27,16 @@ const GLUE: [&str; 10] = [
     "tree/grove.rs",
     "tree/loader.rs",
     "tree/plugin.rs",
+    "grass/grow.rs",
+    "grass/plugin.rs",
+    "grass/draw.rs",
+    "grass/material.rs",
+    "grass/mesh.rs",
+    "fire/burn.rs",
+    "fire/plugin.rs",
+    "fire/draw.rs",
+    "fire/material.rs",
+    "fire/mesh.rs",
     "lib.rs",
 ];
 

@@ -34,6 +34,7 @@ impl Plugin for SwayDrawPlugin {
         }
         load_shader_library!(app, "shaders/beam.wgsl");
         load_shader_library!(app, "shaders/leaf.wgsl");
+        load_shader_library!(app, "shaders/wind.wgsl");
         embedded_asset!(app, "shaders/pose.wgsl");
         embedded_asset!(app, "shaders/sway.wgsl");
         app.add_plugins((MaterialPlugin::<SwayMaterial>::default(), compute::plugin))
