@@ -1,6 +1,6 @@
 //! A meadow and a camp fire at dusk.
 //!
-//! Some 35,000 blades of grass bend in the synthesised wind: gusts run over the meadow as waves. A fire of rhombs burns in a
+//! Some 40,000 blades of grass bend in the synthesised wind: gusts run over the meadow as waves. A fire of rhombs burns in a
 //! ring of stones, leans with the same wind and lights the grass. In a window: fly with W, A, S, D, Q, E and the mouse,
 //! change the wind with the arrow keys, feed the fire with F. Without a display, or with `--headless`, pictures are written
 //! instead.

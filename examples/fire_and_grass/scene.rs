@@ -29,7 +29,7 @@ const HAZE: Color = Color::srgb(0.30, 0.29, 0.36);
 const ZENITH: Vec3 = Vec3::new(0.012, 0.024, 0.075);
 const HORIZON: Vec3 = Vec3::new(0.085, 0.095, 0.16);
 /// Of a camera at dusk: the meadow is dim, the flames just burn out at their hearts.
-const EXPOSURE: Exposure = Exposure { ev100: 6.0 };
+const EXPOSURE: Exposure = Exposure { ev100: 5.0 };
 
 /// The wind blows across the view and a little towards the viewer.
 pub fn wind_direction() -> Dir2 {
@@ -40,7 +40,7 @@ pub fn wind_direction() -> Dir2 {
 pub fn camera_transform(setting: &Setting) -> Transform {
     let (eye, target) = match setting.options.view {
         View::Fire => (Vec3::new(0.9, 1.15, 5.2), Vec3::new(0.0, 0.72, 0.0)),
-        View::Meadow => (Vec3::new(2.5, 2.6, 12.5), Vec3::new(0.0, 0.1, -2.0)),
+        View::Meadow => (Vec3::new(2.5, 2.3, 9.0), Vec3::new(0.0, 0.2, -4.0)),
         View::Close => (Vec3::new(0.3, 0.75, 2.2), Vec3::new(0.0, 0.5, 0.0)),
     };
     Transform::from_translation(eye).looking_at(target, Vec3::Y)
@@ -99,11 +99,11 @@ pub fn build(
 
 /// A dense patch about the fire and a thin one with broader blades behind it.
 fn spawn_meadow(commands: &mut Commands, seed: u64) {
-    let tuft = Tuft { shortest_m: 0.10, longest_m: 0.42, ..default() };
-    let near = Sward { width_m: 15.0, depth_m: 15.0, tufts_per_m2: 7.0, tuft: tuft.clone(), seed, ..default() };
+    let tuft = Tuft { shortest_m: 0.10, longest_m: 0.42, narrowest_m: 0.006, widest_m: 0.013, ..default() };
+    let near = Sward { width_m: 14.0, depth_m: 11.0, tufts_per_m2: 11.0, tuft: tuft.clone(), seed, ..default() };
     let broad = Tuft { blades: 12, narrowest_m: 0.012, widest_m: 0.024, radius_m: 0.35, longest_m: 0.5, ..tuft };
-    let far = Sward { width_m: 70.0, depth_m: 34.0, tufts_per_m2: 0.55, tuft: broad, seed: seed + 1, ..near.clone() };
-    for (sward, middle) in [(near, Vec2::new(0.0, 0.8)), (far, Vec2::new(0.0, -23.7))] {
+    let far = Sward { width_m: 70.0, depth_m: 34.0, tufts_per_m2: 0.5, tuft: broad, seed: seed + 1, ..near.clone() };
+    for (sward, middle) in [(near, Vec2::new(0.0, 0.3)), (far, Vec2::new(0.0, -22.2))] {
         let ground = GrassGround(Arc::new(move |at| ground::meadow_height_m(at + middle)));
         commands.spawn((
             GrassPatch { sward, ..default() },
@@ -181,11 +181,11 @@ fn spawn_dusk(commands: &mut Commands, meshes: &mut Assets<Mesh>, materials: &mu
     let air = StandardMaterial { unlit: true, fog_enabled: false, cull_mode: None, ..default() };
     commands.spawn((Mesh3d(meshes.add(sky())), MeshMaterial3d(materials.add(air)), NotShadowCaster, NotShadowReceiver));
     commands.spawn((
-        DirectionalLight { illuminance: 26.0, color: Color::srgb(1.0, 0.62, 0.36), ..default() },
+        DirectionalLight { illuminance: 34.0, color: Color::srgb(1.0, 0.62, 0.36), ..default() },
         CascadeShadowConfigBuilder { num_cascades: 1, maximum_distance: 40.0, ..default() }.build(),
         Transform::from_translation(SUN).looking_at(Vec3::ZERO, Vec3::Y),
     ));
-    commands.insert_resource(GlobalAmbientLight { color: Color::srgb(0.55, 0.66, 1.0), brightness: 9.0, ..default() });
+    commands.insert_resource(GlobalAmbientLight { color: Color::srgb(0.55, 0.66, 1.0), brightness: 14.0, ..default() });
 }
 
 /// A dome whose colour goes from the horizon to the zenith, warm where the sun has set.

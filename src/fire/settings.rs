@@ -43,7 +43,7 @@ pub struct FireLook {
     /// Luminance of one tongue where it is thickest, cd/m^2: 0 to 1e6. Where many lie behind one another a fire is as many
     /// times as bright.
     pub luminance_cd_m2: f32,
-    /// Light that the fire gives, lm: 0 to 1e7. A candle gives 12; a camp fire a few thousand. 0 spawns no light.
+    /// Light that the fire gives, lm: 0 to 1e7. A candle gives 12, a camp fire some 10,000. 0 spawns no light.
     pub light_lm: f32,
     /// Its colour.
     pub light_colour: [f32; 3],
@@ -65,11 +65,11 @@ pub struct FireLook {
 impl Default for FireLook {
     fn default() -> Self {
         Self {
-            inner_colour: [1.0, 0.16, 0.012],
-            outer_colour: [1.0, 0.46, 0.09],
-            luminance_cd_m2: 380.0,
-            light_lm: 4000.0,
-            light_colour: [1.0, 0.42, 0.12],
+            inner_colour: [1.0, 0.11, 0.004],
+            outer_colour: [1.0, 0.34, 0.03],
+            luminance_cd_m2: 60.0,
+            light_lm: 14_000.0,
+            light_colour: [1.0, 0.40, 0.10],
             casts_shadows: false,
             flicker_hz: 1.7,
             flicker_depth: 0.3,

@@ -14,7 +14,7 @@ use bevy::{
     prelude::*,
 };
 
-/// Length, width at the base, dryness, rank: `blade` of the shader.
+/// Length, width at the base, dryness, rank: `form` of the shader.
 pub(super) const ATTRIBUTE_BLADE: MeshVertexAttribute =
     MeshVertexAttribute::new("Blade", 0x424c_4144, VertexFormat::Float32x4);
 /// Azimuth, lean, droop, phase: `turn` of the shader.

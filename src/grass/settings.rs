@@ -95,8 +95,8 @@ pub struct GrassLook {
 impl Default for GrassLook {
     fn default() -> Self {
         Self {
-            root_colour: [0.012, 0.026, 0.006],
-            tip_colour: [0.17, 0.25, 0.055],
+            root_colour: [0.022, 0.042, 0.010],
+            tip_colour: [0.20, 0.29, 0.065],
             dry_colour: [0.42, 0.34, 0.15],
             translucency: 0.35,
             thins_from_m: 18.0,

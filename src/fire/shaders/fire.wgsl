@@ -65,8 +65,11 @@ const TURN: f32 = 6.283185307179586;
 const BUOYANT_SPEED: f32 = 6.8;
 // `WEIGHTS` of `fire/flicker.rs`; a test holds them equal.
 const WEIGHTS: vec3<f32> = vec3(0.3, 0.45, 0.25);
-// Air that is drawn in from all sides narrows the fire to this share at its top.
-const NECK: f32 = 0.4;
+// Flames rise out of the fuel, in whose shelter they have gathered speed: from so far below, in heights of the fire.
+const SHELTER: f32 = 0.12;
+// Fuel lies about, so the fire is this much wider at its foot; air that is drawn in from all sides narrows it at its top.
+const FOOT: f32 = 1.5;
+const NECK: f32 = 0.5;
 // Sparks fly so many heights of the fire, in so many seconds.
 const SPARK_RISE: f32 = 2.6;
 const SPARK_LIFE_S: f32 = 2.4;
@@ -100,15 +103,16 @@ fn wind_here(world_from_local: mat4x4<f32>) -> vec3<f32> {
 }
 
 // Where the flames carry what would be at `place` in still air that does not move: drawn in, waving, leaning.
-// A parcel that rises with c sqrt(y) in a wind U has gone 2 U sqrt(y) / c to leeward at the height y.
+// A parcel that rises with c sqrt(y) in a wind U has gone 2 U (sqrt(y) - sqrt(y_0)) / c to leeward since it was at y_0.
 fn carried(place: vec3<f32>, wind: vec3<f32>, phase: f32) -> vec3<f32> {
     let share = max(place.y, 0.0) / fire.height_m;
-    let drawn = place.xz * mix(1.0, NECK, smoothstep(0.0, 1.0, share));
-    let wave = 0.085 * fire.height_m * pow(share, 1.4);
+    let drawn = place.xz * mix(FOOT, NECK, smoothstep(0.0, 1.0, share));
+    let wave = 0.07 * fire.height_m * pow(share, 1.2);
     let slow = TURN * (1.3 * share - vec2(turns(0.9, 0.13), turns(0.7, 0.57)));
-    let fast = TURN * (2.9 * share - vec2(turns(1.9, phase), turns(2.3, phase * 3.0)));
-    let waving = wave * (sin(slow) + 0.35 * sin(fast));
-    let leaning = wind.xz * (2.0 * sqrt(max(place.y, 0.0)) / BUOYANT_SPEED);
+    let fast = TURN * (2.7 * share - vec2(turns(1.7, phase), turns(2.1, phase * 3.0)));
+    let waving = wave * (sin(slow) + 0.8 * sin(fast));
+    let origin = SHELTER * fire.height_m;
+    let leaning = wind.xz * (2.0 * (sqrt(max(place.y, 0.0) + origin) - sqrt(origin)) / BUOYANT_SPEED);
     let flat = drawn + waving + leaning;
     return vec3(flat.x, place.y, flat.y);
 }
@@ -129,8 +133,9 @@ fn tongue(in: Vertex, wind: vec3<f32>) -> Flame {
     let puff = 0.5 + 0.5 * sin(TURN * turns(0.8 + 0.6 * phase, phase));
     var foot = in.position;
     var along = in.flame.xyz;
-    var strength = 0.55 + 0.45 * puff;
-    var swell = 0.8 + 0.3 * puff;
+    // There are only three of them, and they are large: they are the dim body in which the others burn.
+    var strength = 0.35 + 0.25 * puff;
+    var swell = 0.75 + 0.3 * puff;
     if in.own.w > 0.5 {
         let life = turns(0.55 + 0.5 * phase, phase * 5.0);
         let bow = sin(0.5 * TURN * life);
@@ -139,8 +144,9 @@ fn tongue(in: Vertex, wind: vec3<f32>) -> Flame {
         swell = 0.45 + 0.65 * bow;
     }
     foot.y = max(foot.y, 0.0);
-    // Flames stand steeper than the rhombs they grow on: they rise.
-    along = mix(along, vec3(0.0, length(along), 0.0), 0.45) * swell;
+    // The first tongues stand about the bed, each where it leans; flames stand steeper than the rhombs they grow on.
+    foot += vec3(along.x, 0.0, along.z) * select(0.1, 0.45, in.own.w < 0.5);
+    along = mix(along, vec3(0.0, length(along), 0.0), 0.5) * swell;
     let here = carried(foot + along * in.uv.y, wind, phase);
     let ahead = carried(foot + along * (in.uv.y + 0.05), wind, phase);
     return Flame(here, strength * flicker(), in.flame.w * (0.6 + 0.5 * swell), ahead - here);
@@ -257,7 +263,7 @@ fn fragment(in: VertexOutput) -> @location(0) vec4<f32> {
         let outline = 1.75 * pow(v + 0.02, 0.5) * (1.0 - v);
         let body = smoothstep(0.0, 0.9, 1.0 - abs(u) / max(outline, 1e-3));
         let stream = streams(in.uv, in.own.y);
-        amount = body * smoothstep(0.22 + 0.3 * v, 0.62 + 0.3 * v, stream + 0.12) * (1.0 - 0.55 * in.height);
+        amount = body * smoothstep(0.22 + 0.3 * v, 0.62 + 0.3 * v, stream + 0.12) * (1.0 - 0.6 * clamp(in.height, 0.0, 1.0));
     } else if kind < 2.5 {
         amount = 6.0 * max(0.0, 1.0 - length(vec2(u, 2.0 * v - 1.0)));
         heat = 0.6;

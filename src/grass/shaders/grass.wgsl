@@ -18,8 +18,8 @@ struct Vertex {
     @location(0) position: vec3<f32>,
     // x: side, -1 to 1, 0 at the tip; y: links up from the root.
     @location(2) uv: vec2<f32>,
-    // Length and width at the base, m; dryness; rank.
-    @location(8) blade: vec4<f32>,
+    // Length and width at the base, m; dryness; rank. (Not `blade`: a name that is imported must not be used again.)
+    @location(8) form: vec4<f32>,
     // Azimuth, lean, droop, rad; phase, 0..1.
     @location(9) turn: vec4<f32>,
 }
@@ -84,20 +84,20 @@ fn presence(distance_m: f32, rank: f32) -> vec2<f32> {
 fn swayed(in: Vertex, world_from_local: mat4x4<f32>, frames_ago: u32) -> Swayed {
     let root = (world_from_local * vec4(in.position, 1.0)).xyz;
     // The camera's place in the shadow pass, too.
-    let present = presence(distance(root, view.lod_view_world_position), in.blade.w);
+    let present = presence(distance(root, view.lod_view_world_position), in.form.w);
 
     let wind = velocity_at(root, frames_ago) * patch_rotation(world_from_local);
     let time_s = select(frame.leaf_time.x, frame.leaf_time.y, frames_ago == 1u);
     let speed = length(wind.xz);
     let tip = blade::tip_bend(wind.xz, grass.half_bend_speed_m_s) + flutter(in.turn.w, time_s, speed);
 
-    let shape = blade::Blade(in.position, in.blade.x * present.x, in.turn.x, in.turn.y, in.turn.z);
+    let shape = blade::Blade(in.position, in.form.x * present.x, in.turn.x, in.turn.y, in.turn.z);
     let joint = blade::joint_at(shape, tip, u32(in.uv.y + 0.5));
     let across = vec3(-sin(in.turn.x), 0.0, cos(in.turn.x));
     let side = normalize(across - joint.axis * dot(across, joint.axis));
     // Narrower towards the tip, first slowly.
     let s = in.uv.y / f32(blade::LINKS);
-    let half_width = 0.5 * in.blade.y * present.y * (1.0 - s * s) * min(1.0, 4.0 * present.x);
+    let half_width = 0.5 * in.form.y * present.y * (1.0 - s * s) * min(1.0, 4.0 * present.x);
     return Swayed(joint.position + side * (in.uv.x * half_width), joint.axis, side);
 }
 
@@ -114,7 +114,7 @@ fn colour(in: Vertex) -> vec3<f32> {
     // Dry blades are dark at the root as well, where their neighbours shade them.
     let dry = grass.dry_colour.rgb * mix(0.2, 1.0, s);
     let own = 0.8 + 0.4 * fract(in.turn.w * 13.0);
-    return own * mix(fresh, dry, in.blade.z);
+    return own * mix(fresh, dry, in.form.z);
 }
 
 @vertex
