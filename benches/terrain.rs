@@ -16,7 +16,7 @@ fn ground() -> TurningBands {
 fn field(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("turning_bands");
     group.bench_function("new", |bencher| {
-        bencher.iter(|| TurningBands::new(black_box(&TurningBandsSettings::default())))
+        bencher.iter(|| TurningBands::new(black_box(&TurningBandsSettings::default())));
     });
     let ground = ground();
     let mut step = 0_u32;
@@ -44,7 +44,7 @@ fn estimation(criterion: &mut Criterion) {
     group.bench_function("variogram_1024", |bencher| bencher.iter(|| Variogram::estimate(black_box(&map), &settings)));
     let variogram = Variogram::estimate(&map, &settings).expect("the map is rough");
     group.bench_function("fit_one", |bencher| {
-        bencher.iter(|| fit_model(black_box(&variogram), CovarianceModel::Bessel))
+        bencher.iter(|| fit_model(black_box(&variogram), CovarianceModel::Bessel));
     });
     group
         .bench_function("fit_all", |bencher| bencher.iter(|| fit_models(black_box(&variogram), &CovarianceModel::ALL)));

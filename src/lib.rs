@@ -27,17 +27,27 @@
 //! | [`dynamics`] | cantilevers, oscillators, load bases, response tables, poses; no ECS | nobody |
 //! | [`texture`] | the canvas with its mips, Fourier textures | nobody |
 //! | [`tree`] | species, growth, meshes, [`Tree`](tree::Tree), [`Season`](tree::Season) | dynamics, texture |
-//! | [`sway`] | trees in the wind, on the processor and in shaders | all four |
+//! | [`sway`] | trees in the wind, on the processor and in shaders | tree, wind, dynamics, texture |
+//! | [`grass`] | meadows that bend in the wind, [`GrassPatch`](grass::GrassPatch) | sway |
+//! | [`fire`] | fires that lean with it and give light, [`Fire`](fire::Fire) | sway, wind |
+//! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Heightfield`](terrain::Heightfield) | nobody |
+//! | [`scatter`] | point patterns and forest plans: where plants stand | nobody |
 
 mod schedule;
+mod setting;
 
 pub mod dynamics;
+pub mod fire;
+pub mod grass;
+pub mod scatter;
 pub mod sway;
+pub mod terrain;
 pub mod texture;
 pub mod tree;
 pub mod wind;
 
 pub use schedule::WindwoodSystems;
+pub use setting::SettingError;
 
 use bevy::app::{PluginGroup, PluginGroupBuilder};
 
@@ -45,6 +55,8 @@ use bevy::app::{PluginGroup, PluginGroupBuilder};
 pub mod prelude {
     pub use crate::{
         WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
+        fire::{Fire, FireLook, FireShape},
+        grass::{GrassGround, GrassLook, GrassPatch, GrassResponse, Sward, Tuft},
         sway::{ActiveSway, SwaySettings},
         tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Season, Species, Tree, TreeBeams, TreeLeaves},
         wind::{ActiveWind, Wind, WindCell, WindClock},
@@ -58,7 +70,11 @@ impl PluginGroup for WindwoodPlugins {
     fn build(self) -> PluginGroupBuilder {
         let group = PluginGroupBuilder::start::<Self>().add_group(WindwoodMinimalPlugins);
         #[cfg(feature = "render")]
-        let group = group.add(sway::SwayDrawPlugin).add(wind::WindGizmoPlugin);
+        let group = group
+            .add(sway::SwayDrawPlugin)
+            .add(grass::GrassDrawPlugin)
+            .add(fire::FireDrawPlugin)
+            .add(wind::WindGizmoPlugin);
         group
     }
 }
@@ -69,6 +85,11 @@ pub struct WindwoodMinimalPlugins;
 
 impl PluginGroup for WindwoodMinimalPlugins {
     fn build(self) -> PluginGroupBuilder {
-        PluginGroupBuilder::start::<Self>().add(wind::WindPlugin).add(tree::TreePlugin).add(sway::SwayPlugin)
+        PluginGroupBuilder::start::<Self>()
+            .add(wind::WindPlugin)
+            .add(tree::TreePlugin)
+            .add(sway::SwayPlugin)
+            .add(grass::GrassPlugin)
+            .add(fire::FirePlugin)
     }
 }

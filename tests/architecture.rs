@@ -6,17 +6,21 @@ use std::{
 };
 
 /// A room and the rooms it may import. A room that is not here may not exist.
-const MAY_KNOW: [(&str, &[&str]); 5] = [
+const MAY_KNOW: [(&str, &[&str]); 9] = [
     ("wind", &[]),
     ("dynamics", &[]),
     ("texture", &[]),
+    ("terrain", &[]),
+    ("scatter", &[]),
     ("tree", &["dynamics", "texture"]),
     ("sway", &["tree", "wind", "dynamics", "texture"]),
+    ("grass", &["sway"]),
+    ("fire", &["sway", "wind"]),
 ];
 
-/// Files that glue a room to the engine. All others of `wind`, `dynamics` and `tree` are pure: they can be read beside the
+/// Files that glue a room to the engine. All others but those of `sway` are pure: they can be read beside the
 /// paper, and know no entities, systems or apps.
-const GLUE: [&str; 11] = [
+const GLUE: [&str; 21] = [
     "wind/cells.rs",
     "wind/clock.rs",
     "wind/current.rs",
@@ -27,6 +31,16 @@ const GLUE: [&str; 11] = [
     "tree/loader.rs",
     "tree/plugin.rs",
     "tree/season.rs",
+    "grass/grow.rs",
+    "grass/plugin.rs",
+    "grass/draw.rs",
+    "grass/material.rs",
+    "grass/mesh.rs",
+    "fire/burn.rs",
+    "fire/plugin.rs",
+    "fire/draw.rs",
+    "fire/material.rs",
+    "fire/mesh.rs",
     "lib.rs",
 ];
 

@@ -1,8 +1,8 @@
-//! Pictures instead of a window.
+//! Pictures instead of a window, of any scene that has a `NAME`, a camera and a way to tell when it is ready.
 
 use crate::{
     options::Options,
-    scene::{Setting, camera_transform, haze},
+    scene::{NAME, Setting, camera_transform, haze, is_ready},
 };
 use bevy::{
     camera::RenderTarget,
@@ -51,7 +51,7 @@ fn run(app: &mut App, options: &Options) -> Result<(), String> {
         return Err("there is no graphics device; on Linux, Mesa's software Vulkan is one (mesa-vulkan-drivers)".into());
     }
     let target = spawn_camera(app, options);
-    while !is_ready(app, options)? {
+    while !is_ready(app.world_mut(), options)? {
         app.update();
         if begun.elapsed() > PATIENCE {
             return Err("the wind or a species did not get ready; see the warnings above".into());
@@ -67,7 +67,7 @@ fn run(app: &mut App, options: &Options) -> Result<(), String> {
         let time_s = options.start + f64::from(frame) * options.interval;
         *app.world_mut().resource_mut::<WindClock>() = WindClock { time_s, previous_s: time_s };
         let picture = capture(app, options, &target)?;
-        let path = options.out.join(format!("forest_{frame:03}.png"));
+        let path = options.out.join(format!("{NAME}_{frame:03}.png"));
         save(&picture, &path)?;
         println!("{} after {:.1} s", path.display(), begun.elapsed().as_secs_f32());
         if options.strip {
@@ -98,19 +98,6 @@ fn spawn_camera(app: &mut App, options: &Options) -> Handle<Image> {
         haze(),
     ));
     target
-}
-
-/// Whether the wind blows and every tree is drawn; an error if that will never be.
-fn is_ready(app: &mut App, options: &Options) -> Result<bool, String> {
-    let world = app.world_mut();
-    let assets = world.resource::<AssetServer>().clone();
-    if let Some(tree) = world.query::<&Tree>().iter(world).find(|tree| assets.load_state(&tree.species).is_failed()) {
-        return Err(format!("{:?} could not be loaded; the reason stands above", tree.species.path()));
-    }
-    let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
-    let trees = world.query_filtered::<(), With<Tree>>().iter(world).count();
-    let planted = trees > 0 || options.trees == 0;
-    Ok(world.resource::<ActiveSway>().is_ready() && planted && bare == 0)
 }
 
 /// One frame, rendered to the end.

@@ -13,7 +13,11 @@ use bevy::{
     prelude::*,
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
+use bevy_windwood::prelude::*;
 use noise::{NoiseFn, OpenSimplex};
+
+/// What pictures of it are called.
+pub const NAME: &str = "forest";
 
 /// What the scene is made from.
 #[derive(Resource)]
@@ -62,6 +66,18 @@ pub fn haze() -> DistanceFog {
         directional_light_exponent: 12.0,
         falloff: FogFalloff::ExponentialSquared { density: 1.0 / 6500.0 },
     }
+}
+
+/// Whether the wind blows and every tree is drawn; an error if that will never be.
+pub fn is_ready(world: &mut World, options: &Options) -> Result<bool, String> {
+    let assets = world.resource::<AssetServer>().clone();
+    if let Some(tree) = world.query::<&Tree>().iter(world).find(|tree| assets.load_state(&tree.species).is_failed()) {
+        return Err(format!("{:?} could not be loaded; the reason stands above", tree.species.path()));
+    }
+    let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
+    let trees = world.query_filtered::<(), With<Tree>>().iter(world).count();
+    let planted = trees > 0 || options.trees == 0;
+    Ok(world.resource::<ActiveSway>().is_ready() && planted && bare == 0)
 }
 
 /// Spawns everything but the camera.

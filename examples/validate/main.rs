@@ -6,8 +6,10 @@
 mod basis;
 mod beams;
 mod parity;
+mod points;
 mod report;
 mod spectrum;
+mod terrain;
 mod trees;
 
 use clap::{Parser, ValueEnum};
@@ -24,6 +26,10 @@ enum Topic {
     Beams,
     /// The posed vertices of the graphics processor against the processor's.
     Parity,
+    /// Random ground against its covariance models, and the round trip from ground to fit.
+    Terrain,
+    /// Point patterns against their laws, and the laws of real patterns.
+    Points,
     /// The trees against the papers' tables, their own settings, and real trees.
     Trees,
 }
@@ -45,6 +51,8 @@ fn main() -> ExitCode {
         Topic::Basis => basis::run(),
         Topic::Beams => beams::run(),
         Topic::Parity => parity::run(),
+        Topic::Terrain => terrain::run(),
+        Topic::Points => points::run(),
         Topic::Trees => trees::run(),
     };
     report.print();

@@ -220,7 +220,7 @@ fn carry_points(
         return;
     };
     let Some(compute) = cache.get_compute_pipeline(pipeline.1) else { return };
-    let StandTables { poses, beams, trees, frame } = &probe.tables;
+    let StandTables { poses, beams, trees, frame, .. } = &probe.tables;
     let bound = [poses, beams, trees, frame, &probe.points, &probe.carried].map(|handle| buffers.get(handle));
     let [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)] = bound else { return };
     let [a, b, c, d, e, f] = [a, b, c, d, e, f].map(|buffer| buffer.buffer.as_entire_buffer_binding());

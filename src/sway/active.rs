@@ -127,9 +127,9 @@ pub(super) fn wrapped_time_s(response: &WindResponse, time_s: f64) -> f64 {
     time_s.rem_euclid(response.field.period_s())
 }
 
-/// Length after which the flutter of leaves repeats itself, s. It is no wind's own, so that flutter does not jump when
-/// one wind fades into another.
-pub(super) const FLUTTER_PERIOD_S: f64 = 128.0;
+/// Length after which the flutter of leaves, and whatever else has a rhythm of its own, repeats itself, s. It is no wind's
+/// own, so that flutter does not jump when one wind fades into another.
+pub const FLUTTER_PERIOD_S: f64 = 128.0;
 
 /// The clock of the leaves' flutter, s.
 pub(super) fn leaf_clock_s(time_s: f64) -> f32 {

@@ -20,6 +20,7 @@ use bevy::{
         renderer::{RenderContext, RenderDevice, RenderGraph},
         storage::{GpuShaderBuffer, ShaderBuffer},
     },
+    shader::ShaderDefVal,
 };
 
 /// Threads of a workgroup; `WORKGROUP` of the shader.
@@ -30,7 +31,7 @@ const POSE_SHADER: &str = "embedded://bevy_windwood/sway/shaders/pose.wgsl";
 /// What is to be posed this frame.
 #[derive(Resource, ExtractResource, Clone)]
 pub(super) struct PoseJob {
-    /// Slot A, slot B, beams, trees, frame, poses: the bindings in their order.
+    /// Slot A, slot B, beams, trees, frame, poses.
     pub buffers: [Handle<ShaderBuffer>; 6],
     /// Rows of the table of trees.
     pub trees: u32,
@@ -71,9 +72,16 @@ fn queue_pipelines(mut commands: Commands, assets: Res<AssetServer>, cache: Res<
     let table = || storage_buffer_read_only_sized(false, None);
     let layout = BindGroupLayoutDescriptor::new(
         "tree poses",
-        &BindGroupLayoutEntries::sequential(
+        &BindGroupLayoutEntries::with_indices(
             ShaderStages::COMPUTE,
-            (table(), table(), table(), table(), table(), storage_buffer_sized(false, None)),
+            (
+                (100, storage_buffer_sized(false, None)),
+                (101, table()),
+                (102, table()),
+                (103, table()),
+                (105, table()),
+                (106, table()),
+            ),
         ),
     );
     let pipeline = |entry_point: &'static str| {
@@ -81,6 +89,8 @@ fn queue_pipelines(mut commands: Commands, assets: Res<AssetServer>, cache: Res<
             label: Some(entry_point.into()),
             layout: vec![layout.clone()],
             shader: assets.load(POSE_SHADER),
+            // Materials and this shader import the same tables; here they are in the only group.
+            shader_defs: vec![ShaderDefVal::UInt("MATERIAL_BIND_GROUP".into(), 0)],
             entry_point: Some(entry_point.into()),
             ..default()
         })
@@ -108,7 +118,7 @@ fn bind_tables(
     let group = device.create_bind_group(
         "tree poses",
         &layout,
-        &BindGroupEntries::sequential((a, b, beams, trees, frame, poses)),
+        &BindGroupEntries::with_indices(((100, poses), (101, beams), (102, trees), (103, frame), (105, a), (106, b))),
     );
     commands.insert_resource(PoseBindings(group));
 }

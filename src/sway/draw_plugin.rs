@@ -37,6 +37,7 @@ impl Plugin for SwayDrawPlugin {
         load_shader_library!(app, "shaders/season.wgsl");
         embedded_asset!(app, "shaders/foliage.wgsl");
         embedded_asset!(app, "shaders/mask.wgsl");
+        load_shader_library!(app, "shaders/wind.wgsl");
         embedded_asset!(app, "shaders/pose.wgsl");
         embedded_asset!(app, "shaders/sway.wgsl");
         app.add_plugins((MaterialPlugin::<SwayMaterial>::default(), compute::plugin))

@@ -29,7 +29,7 @@ mod stand;
 #[cfg(feature = "render")]
 mod upload;
 
-pub use active::{ActiveSway, WeightedResponse};
+pub use active::{ActiveSway, FLUTTER_PERIOD_S, WeightedResponse};
 pub use articulated::TreePose;
 pub use plugin::SwayPlugin;
 pub use response::{SwaySettings, WindResponse};

@@ -1,4 +1,4 @@
-//! The tables as the shaders read them. Each layout here has its twin in `shaders/beam.wgsl` or `shaders/pose.wgsl`.
+//! The tables as the shaders read them. Each layout here has its twin in `shaders/beam.wgsl` or `shaders/wind.wgsl`.
 
 use crate::{dynamics::pose::BeamDynamics, sway::response::WindResponse};
 use bevy::math::Vec4;

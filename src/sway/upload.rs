@@ -60,8 +60,14 @@ impl FromWorld for StandBuffers {
     }
 }
 
-/// The tables of all trees that sway, for shaders of your own that draw with them: import `bevy_windwood::beam`, which has
-/// the layouts and `carry`, and find a tree's row in the low 24 bits of its mesh tag.
+/// The tables of all trees that sway and of the wind, for shaders of your own.
+///
+/// To draw what rides on trees, import `bevy_windwood::beam`, which has the layouts and `carry`, and find a tree's row in
+/// the low 24 bits of its mesh tag. To read the wind, import `bevy_windwood::wind`, which has `velocity_at`, and bind
+/// `frame` at 103 and `winds` at 105 and 106 of the material's group.
+///
+/// The resource counts as changed whenever a buffer has been replaced by one of another size: then touch the materials that
+/// are bound to it, so that they are bound anew.
 #[derive(Resource, Clone)]
 pub struct StandTables {
     /// `array<BeamPose>`: this frame's and the last frame's.
@@ -72,12 +78,20 @@ pub struct StandTables {
     pub trees: Handle<ShaderBuffer>,
     /// One `Frame`.
     pub frame: Handle<ShaderBuffer>,
+    /// `array<vec4<f32>>`: the winds of slot A and B, between which `frame` says how to fade.
+    pub winds: [Handle<ShaderBuffer>; 2],
 }
 
 impl FromWorld for StandTables {
     fn from_world(world: &mut World) -> Self {
-        let StandBuffers { poses, beams, trees, frame, .. } = world.resource::<StandBuffers>();
-        Self { poses: poses.clone(), beams: beams.clone(), trees: trees.clone(), frame: frame.clone() }
+        let StandBuffers { poses, beams, trees, frame, winds, .. } = world.resource::<StandBuffers>();
+        Self {
+            poses: poses.clone(),
+            beams: beams.clone(),
+            trees: trees.clone(),
+            frame: frame.clone(),
+            winds: winds.clone(),
+        }
     }
 }
 
@@ -87,6 +101,7 @@ pub(super) struct Uploads<'w> {
     shared: ResMut<'w, StandBuffers>,
     buffers: ResMut<'w, Assets<ShaderBuffer>>,
     materials: ResMut<'w, Assets<SwayMaterial>>,
+    tables: ResMut<'w, StandTables>,
 }
 
 impl Uploads<'_> {
@@ -122,6 +137,8 @@ impl Uploads<'_> {
             self.shared.stale_materials -= 1;
             // Iterating mutably marks every material as changed.
             self.materials.iter_mut().for_each(drop);
+            // Others who are bound to the tables see this.
+            self.tables.set_changed();
         }
     }
 }

@@ -4,6 +4,7 @@
 #![allow(dead_code)]
 
 pub mod firs;
+pub mod plants;
 
 use bevy::{
     log::LogPlugin,

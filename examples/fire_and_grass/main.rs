@@ -1,0 +1,68 @@
+//! A meadow and a camp fire at dusk.
+//!
+//! Some 40,000 blades of grass bend in the synthesised wind: gusts run over the meadow as waves. A fire of rhombs burns in a
+//! ring of stones, leans with the same wind and lights the grass. In a window: fly with W, A, S, D, Q, E and the mouse,
+//! change the wind with the arrow keys, feed the fire with F. Without a display, or with `--headless`, pictures are written
+//! instead.
+//!
+//! `cargo run --example fire_and_grass -- --help` lists the options.
+
+mod flight;
+mod ground;
+#[path = "../forest/headless.rs"]
+mod headless;
+mod options;
+mod scene;
+
+use bevy::{log::LogPlugin, prelude::*, render::RenderPlugin, window::ExitCondition, winit::WinitPlugin};
+use bevy_windwood::prelude::*;
+use clap::Parser;
+use options::Options;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let options = Options::parse();
+    let headless = options.headless || !has_display();
+    if headless && !options.headless {
+        println!("There is no display: writing pictures to `{}` instead.", options.out.display());
+    }
+    let mut app = App::new();
+    app.add_plugins((engine(&options, headless), WindwoodPlugins))
+        .insert_resource(Wind {
+            speed: options.wind,
+            direction: scene::wind_direction(),
+            seed: options.seed,
+            roughness_m: 0.05,
+            ..default()
+        })
+        .insert_resource(scene::Setting { options: options.clone() })
+        .add_systems(Startup, scene::build);
+    if headless {
+        headless::render(app, &options)
+    } else {
+        app.add_plugins(flight::plugin).run();
+        ExitCode::SUCCESS
+    }
+}
+
+/// Bevy with a window, or with none.
+fn engine(options: &Options, headless: bool) -> bevy::app::PluginGroupBuilder {
+    let (width, height) = options.size;
+    let window =
+        Window { title: "bevy_windwood: fire and grass".into(), resolution: (width, height).into(), ..default() };
+    let plugins = DefaultPlugins.set(LogPlugin { filter: "wgpu=error,naga=warn".into(), ..default() });
+    if !headless {
+        return plugins.set(WindowPlugin { primary_window: Some(window), ..default() });
+    }
+    plugins
+        .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
+        .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
+        .disable::<bevy::render::pipelined_rendering::PipelinedRenderingPlugin>()
+        .disable::<WinitPlugin>()
+}
+
+/// Whether a window can be opened. Only Linux has machines without a display as a rule.
+fn has_display() -> bool {
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    !cfg!(target_os = "linux") || set("DISPLAY") || set("WAYLAND_DISPLAY")
+}

@@ -1,0 +1,133 @@
+//! Draws fires: a mesh and a material for each, made once, and a light that flickers.
+
+use super::{
+    burn::{Burning, Fire, kindle_fires},
+    material::{FireMaterial, ShelteredFireMaterial},
+    mesh::{bounds, fire_mesh},
+};
+use crate::{
+    schedule::WindwoodSystems,
+    sway::{DrawPath, StandTables},
+    wind::WindClock,
+};
+use bevy::{
+    asset::embedded_asset,
+    camera::visibility::NoAutoAabb,
+    light::{NotShadowCaster, NotShadowReceiver},
+    pbr::MaterialPlugin,
+    prelude::*,
+    render::RenderApp,
+};
+
+/// Draws [`Fire`]s and spawns their lights. Needs [`SwayDrawPlugin`](crate::sway::SwayDrawPlugin), which has the wind
+/// tables. Without a renderer it does nothing.
+pub struct FireDrawPlugin;
+
+impl Plugin for FireDrawPlugin {
+    fn build(&self, app: &mut App) {
+        if app.get_sub_app(RenderApp).is_none() {
+            return;
+        }
+        embedded_asset!(app, "shaders/fire.wgsl");
+        let can_draw = resource_exists::<DrawPath>.and_then(resource_exists::<StandTables>);
+        app.add_plugins((
+            MaterialPlugin::<FireMaterial>::default(),
+            MaterialPlugin::<ShelteredFireMaterial>::default(),
+        ))
+        .add_observer(clear_hearth)
+        .add_systems(Update, (show_fires, flicker_lights).chain().after(kindle_fires).run_if(can_draw))
+        .add_systems(
+            PostUpdate,
+            bind_anew.after(WindwoodSystems::Upload).run_if(resource_exists_and_changed::<StandTables>),
+        );
+    }
+}
+
+/// The light of a fire: a child of it, with a [`PointLight`] whose intensity flickers.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default)]
+#[reflect(Component, Default)]
+pub struct FireLight;
+
+/// Height of the light over that of the fire: where most of the flames are.
+const LIGHT_HEIGHT: f32 = 0.45;
+/// Beyond this distance the light gives less than this, lx: less than a full moon.
+const LEAST_ILLUMINANCE_LX: f32 = 0.1;
+
+fn show_fires(
+    mut commands: Commands,
+    path: Res<DrawPath>,
+    tables: Res<StandTables>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut windy: ResMut<Assets<FireMaterial>>,
+    mut sheltered: ResMut<Assets<ShelteredFireMaterial>>,
+    fires: Query<(Entity, &Burning, Option<&Children>), Changed<Burning>>,
+    lights: Query<Entity, With<FireLight>>,
+) {
+    for (entity, burning, children) in &fires {
+        for old in children.into_iter().flatten().filter(|child| lights.contains(**child)) {
+            commands.entity(*old).despawn();
+        }
+        let mut fire = commands.entity(entity);
+        fire.insert((
+            Mesh3d(meshes.add(fire_mesh(burning))),
+            bounds(burning),
+            NoAutoAabb,
+            NotShadowCaster,
+            NotShadowReceiver,
+        ));
+        if path.sways {
+            fire.insert(MeshMaterial3d(windy.add(FireMaterial::new(burning, &tables))));
+        } else {
+            fire.insert(MeshMaterial3d(sheltered.add(ShelteredFireMaterial::new(burning))));
+        }
+        if burning.fire.look.light_lm > 0.0 {
+            let place = Transform::from_xyz(0.0, LIGHT_HEIGHT * burning.height_m, 0.0);
+            fire.with_child((FireLight, point_light(burning), place));
+        }
+    }
+}
+
+fn point_light(burning: &Burning) -> PointLight {
+    let look = &burning.fire.look;
+    let [red, green, blue] = look.light_colour;
+    PointLight {
+        color: Color::linear_rgb(red, green, blue),
+        intensity: look.light_lm,
+        // A point light of I lm gives I / (4 pi r^2) lx.
+        range: (look.light_lm / (4.0 * std::f32::consts::PI * LEAST_ILLUMINANCE_LX)).sqrt(),
+        radius: 0.25 * burning.fire.shape.size_m,
+        shadow_maps_enabled: look.casts_shadows,
+        ..default()
+    }
+}
+
+fn flicker_lights(
+    clock: Res<WindClock>,
+    fires: Query<&Burning>,
+    mut lights: Query<(&ChildOf, &mut PointLight), With<FireLight>>,
+) {
+    for (fire, mut light) in &mut lights {
+        let Ok(burning) = fires.get(fire.parent()) else { continue };
+        light.intensity = burning.fire.look.light_lm * burning.flicker.level(clock.time_s);
+    }
+}
+
+/// Binds materials to wind tables that were replaced.
+fn bind_anew(mut materials: ResMut<Assets<FireMaterial>>) {
+    // Iterating mutably marks every material as changed.
+    materials.iter_mut().for_each(drop);
+}
+
+fn clear_hearth(
+    removed: On<Remove, Fire>,
+    mut commands: Commands,
+    children: Query<&Children>,
+    lights: Query<Entity, With<FireLight>>,
+) {
+    for light in children.iter_descendants(removed.entity).filter(|child| lights.contains(*child)) {
+        commands.entity(light).try_despawn();
+    }
+    if let Ok(mut fire) = commands.get_entity(removed.entity) {
+        fire.try_remove::<(Mesh3d, MeshMaterial3d<FireMaterial>, MeshMaterial3d<ShelteredFireMaterial>)>();
+    }
+}

@@ -1,0 +1,107 @@
+//! The mesh of a fire: a strip for each tongue, the bed of embers, sparks, and the glow around all.
+//!
+//! Tongues turn their breadth to the eye in the vertex shader: a rhomb seen from its edge would not be there. The bases of
+//! copies, which hang in the air and are seen from their edge, are left out.
+
+use super::{
+    burn::Burning,
+    rhombs::{Rhomb, RhombKind},
+};
+use bevy::{
+    asset::RenderAssetUsages,
+    camera::primitives::Aabb,
+    mesh::{Indices, MeshVertexAttribute, PrimitiveTopology, VertexFormat},
+    prelude::*,
+};
+use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
+
+/// Longest diagonal and half of the shortest, m: `flame` of the shader.
+pub(super) const ATTRIBUTE_FLAME: MeshVertexAttribute =
+    MeshVertexAttribute::new("Flame", 0x464c_414d, VertexFormat::Float32x4);
+/// Kind, phase, size as a share of the whole, order: `own` of the shader.
+pub(super) const ATTRIBUTE_FLAME_OWN: MeshVertexAttribute =
+    MeshVertexAttribute::new("FlameOwn", 0x464c_4f57, VertexFormat::Float32x4);
+
+/// Kinds of strips, as the shader tells them apart.
+const BED: f32 = 0.0;
+const TONGUE: f32 = 1.0;
+const SPARK: f32 = 2.0;
+const GLOW: f32 = 3.0;
+
+/// Rows of a strip: enough for a tongue to curve.
+const ROWS: u32 = 5;
+/// Breadth of a spark, as a share of the fire's size.
+const SPARK_SHARE: f32 = 0.007;
+/// Radius of the glow over the height of the fire.
+const GLOW_SHARE: f32 = 1.5;
+/// How far flames and sparks may be blown, in heights of the fire.
+const REACH: f32 = 4.0;
+
+#[derive(Default)]
+struct Strips {
+    starts: Vec<[f32; 3]>,
+    uvs: Vec<[f32; 2]>,
+    flames: Vec<[f32; 4]>,
+    own: Vec<[f32; 4]>,
+    indices: Vec<u32>,
+}
+
+impl Strips {
+    fn add(&mut self, start: Vec3, along: Vec3, half_width_m: f32, own: [f32; 4]) {
+        let first = self.starts.len() as u32;
+        for row in 0..ROWS {
+            for side in [-1.0, 1.0] {
+                self.starts.push(start.to_array());
+                self.uvs.push([side, row as f32 / (ROWS - 1) as f32]);
+                self.flames.push(along.extend(half_width_m).to_array());
+                self.own.push(own);
+            }
+        }
+        let quads = (0..ROWS - 1).map(|row| first + 2 * row);
+        self.indices.extend(quads.flat_map(|a| [a, a + 1, a + 2, a + 2, a + 1, a + 3]));
+    }
+}
+
+pub(super) fn fire_mesh(burning: &Burning) -> Mesh {
+    let shape = &burning.fire.shape;
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(!shape.seed);
+    let mut strips = Strips::default();
+    let half_width = |rhomb: &Rhomb| 0.5 * rhomb.across.length();
+    for rhomb in burning.rhombs.iter() {
+        let share = match rhomb.kind {
+            RhombKind::Base => rhomb.along.length() / shape.size_m,
+            RhombKind::Tongue => rhomb.along.length() / (shape.size_m * shape.tongue_length),
+        };
+        match rhomb.kind {
+            RhombKind::Base if rhomb.order > 0 => {}
+            RhombKind::Base => {
+                strips.add(rhomb.start, rhomb.along, half_width(rhomb), [BED, random.random(), share, 0.0]);
+            }
+            RhombKind::Tongue => {
+                let own = [TONGUE, random.random(), share, rhomb.order as f32];
+                strips.add(rhomb.start, rhomb.along, half_width(rhomb), own);
+            }
+        }
+    }
+    for _ in 0..burning.fire.look.embers {
+        let place = Vec2::from_angle(random.random_range(0.0..std::f32::consts::TAU)) * random.random::<f32>();
+        let start = Vec3::new(place.x, 0.0, place.y) * (0.3 * shape.size_m);
+        strips.add(start, Vec3::Y * shape.size_m, SPARK_SHARE * shape.size_m, [SPARK, random.random(), 0.0, 0.0]);
+    }
+    if burning.fire.look.glow > 0.0 {
+        let radius = GLOW_SHARE * burning.height_m;
+        strips.add(Vec3::Y * (0.4 * burning.height_m), Vec3::Y * radius, radius, [GLOW, 0.0, 1.0, 0.0]);
+    }
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, strips.starts)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, strips.uvs)
+        .with_inserted_attribute(ATTRIBUTE_FLAME, strips.flames)
+        .with_inserted_attribute(ATTRIBUTE_FLAME_OWN, strips.own)
+        .with_inserted_indices(Indices::U32(strips.indices))
+}
+
+/// A box that holds the fire and its sparks in a storm.
+pub(super) fn bounds(burning: &Burning) -> Aabb {
+    let reach = REACH * burning.height_m.max(burning.fire.shape.size_m);
+    Aabb::from_min_max(Vec3::new(-reach, -0.5 * reach, -reach), Vec3::splat(reach))
+}

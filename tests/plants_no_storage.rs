@@ -1,0 +1,22 @@
+//! A device without storage buffers: meadows stand still, fires burn upright. A program of its own, because Bevy finds out
+//! once a process whether skins need them. Needs a Vulkan driver; Mesa's software one will do.
+
+mod support;
+
+use bevy::{prelude::*, render::render_resource::WgpuLimits};
+use bevy_windwood::sway::DrawPath;
+use std::time::Duration;
+use support::{
+    headless_app,
+    plants::{assert_all_compile, draw_meadow},
+};
+
+#[test]
+fn meadow_and_fire_are_drawn_without_storage_buffers() {
+    // What WebGL 2 guarantees.
+    let mut app = headless_app(Duration::from_millis(16), Some(WgpuLimits::downlevel_webgl2_defaults()));
+    let [patch, _] = draw_meadow(&mut app, false);
+    assert!(!app.world().resource::<DrawPath>().sways);
+    assert!(app.world().get::<MeshMaterial3d<StandardMaterial>>(patch).is_some());
+    assert_all_compile(&app);
+}
