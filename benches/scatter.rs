@@ -5,10 +5,9 @@ use bevy_windwood::scatter::{
     ForestPlan, LevelGround, Planter,
     counts::{CountKind, Frequencies, by_likelihood, characterise},
     plan::{Area, KeepOut, Shape},
-    quadrat::read_points,
 };
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use std::{fmt::Write, hint::black_box};
+use std::hint::black_box;
 
 fn shipped() -> ForestPlan {
     ForestPlan::from_ron(include_str!("../assets/forests/mixed.forest.ron")).expect("the shipped forest is valid")
@@ -74,17 +73,5 @@ fn fits(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn csv(criterion: &mut Criterion) {
-    let mut text = String::from("x,y\n");
-    for number in 0..1_000_000_u32 {
-        let [x, y] = [number % 1000, number / 1000].map(|place| 1.37 * f64::from(place));
-        writeln!(text, "{x:.3},{y:.3}").expect("strings take all");
-    }
-    let mut group = criterion.benchmark_group("csv");
-    group.sample_size(10).throughput(Throughput::Elements(1_000_000));
-    group.bench_function("million", |bencher| bencher.iter(|| read_points(text.as_bytes())));
-    group.finish();
-}
-
-criterion_group!(benches, forest, cell, fits, csv);
+criterion_group!(benches, forest, cell, fits);
 criterion_main!(benches);

@@ -11,10 +11,10 @@ use bevy_windwood::scatter::{
         CountKind, CountModel, Frequencies, by_likelihood, by_moments, characterise, dispersion, goodness_of_fit,
     },
     plan::{Area, KeepOut, Shape},
-    quadrat::{QuadratGrid, draw_counts, exact_counts, place_points, read_points},
+    quadrat::{QuadratGrid, draw_counts, exact_counts, place_points},
 };
 use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
-use std::{collections::BTreeSet, fmt::Write, time::Instant};
+use std::{collections::BTreeSet, time::Instant};
 
 /// Patterns of each law.
 const PATTERNS: u64 = 100;
@@ -69,7 +69,6 @@ pub fn run() -> Report {
     report.tell("cell_small_forest_s", small, "one cell of the shipped forest");
     report.tell("cell_huge_forest_s", huge, "the same cell among 2,000 more areas and 100,000 m of paths");
     report.tell("cell_huge_to_small", huge / small, "");
-    report.tell("csv_million_s", csv_s(), "reading a million points");
     report
 }
 
@@ -217,16 +216,4 @@ fn cell_s(plan: &ForestPlan) -> f64 {
         start.elapsed().as_secs_f64()
     };
     (0..200).map(once).fold(f64::INFINITY, f64::min)
-}
-
-fn csv_s() -> f64 {
-    let mut text = String::from("x,y\n");
-    for number in 0..1_000_000_u32 {
-        let [x, y] = [number % 1000, number / 1000].map(|place| 1.37 * f64::from(place));
-        writeln!(text, "{x:.3},{y:.3}").expect("strings take all");
-    }
-    let start = Instant::now();
-    let points = read_points(text.as_bytes()).expect("points");
-    assert_eq!(points.len(), 1_000_000);
-    start.elapsed().as_secs_f64()
 }

@@ -1,4 +1,4 @@
-//! What can be wrong with a plan of a forest, a law of counts or a file of points.
+//! What can be wrong with a plan of a forest, or a law of counts.
 
 use std::{fmt::Display, ops::RangeInclusive};
 
@@ -27,14 +27,6 @@ pub enum ScatterError {
         /// What would be allowed.
         allowed: String,
     },
-    /// A file of points cannot be read.
-    #[error("points, line {line}: {message}")]
-    Points {
-        /// Line, from 1.
-        line: u64,
-        /// What is wrong there.
-        message: String,
-    },
 }
 
 impl ScatterError {
@@ -49,7 +41,7 @@ impl ScatterError {
             Self::OutOfRange { field, value, allowed } => {
                 Self::OutOfRange { field: format!("{parent}.{field}"), value, allowed }
             }
-            other @ (Self::Syntax { .. } | Self::Points { .. }) => other,
+            syntax @ Self::Syntax { .. } => syntax,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The quadrat method (algorithm 2 of Setas et al.): a grid over the ground, and how many plants stand in each square.
 //!
-//! - [`QuadratGrid`] counts the points of a real pattern ([`read_points`] reads them from CSV).
+//! - [`QuadratGrid`] counts the points of a real pattern.
 //! - [`draw_counts`] draws every quadrat's count from a law, independently: the pattern has the law's own variation.
 //! - [`exact_counts`] is the algorithm as printed, with exactly N points: the quadrats follow the law as closely as whole
 //!   numbers can.
@@ -8,11 +8,9 @@
 
 mod grid;
 mod place;
-mod points;
 mod whole;
 
 pub use grid::QuadratGrid;
 pub use place::place_points;
 pub(super) use place::throw_darts;
-pub use points::{MOST_POINTS, read_points};
 pub use whole::{draw_counts, exact_counts};
