@@ -66,9 +66,9 @@ fn colour(at: Vec2, noise: &OpenSimplex) -> [f32; 4] {
     let octave = |length_m: f32| noise.get([at.x, at.y].map(|c| f64::from(c / length_m))) as f32;
     let mottled = 1.0 + 0.25 * octave(0.9) + 0.2 * octave(7.0);
     let under = Vec3::new(0.030, 0.040, 0.012);
-    let far = Vec3::new(0.085, 0.115, 0.032);
+    let far = Vec3::new(0.075, 0.105, 0.028);
     let ash = Vec3::new(0.035, 0.030, 0.026);
-    let meadow = under.lerp(far, smooth(10.0, 45.0, at.length())) * mottled;
+    let meadow = under.lerp(far, smooth(4.0, 18.0, at.length())) * mottled;
     let colour = ash.lerp(meadow, smooth(0.7 * HEARTH_M, 1.1 * HEARTH_M, at.length()));
     [colour.x, colour.y, colour.z, 1.0]
 }

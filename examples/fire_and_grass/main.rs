@@ -33,6 +33,7 @@ fn main() -> ExitCode {
             direction: scene::wind_direction(),
             seed: options.seed,
             roughness_m: 0.05,
+            gustiness: 1.6,
             ..default()
         })
         .insert_resource(scene::Setting { options: options.clone() })

@@ -101,8 +101,8 @@ pub fn build(
 fn spawn_meadow(commands: &mut Commands, seed: u64) {
     let tuft = Tuft { shortest_m: 0.10, longest_m: 0.42, narrowest_m: 0.006, widest_m: 0.013, ..default() };
     let near = Sward { width_m: 14.0, depth_m: 11.0, tufts_per_m2: 11.0, tuft: tuft.clone(), seed, ..default() };
-    let broad = Tuft { blades: 12, narrowest_m: 0.012, widest_m: 0.024, radius_m: 0.35, longest_m: 0.5, ..tuft };
-    let far = Sward { width_m: 70.0, depth_m: 34.0, tufts_per_m2: 0.5, tuft: broad, seed: seed + 1, ..near.clone() };
+    let broad = Tuft { blades: 12, narrowest_m: 0.025, widest_m: 0.045, radius_m: 0.4, longest_m: 0.5, ..tuft };
+    let far = Sward { width_m: 60.0, depth_m: 34.0, tufts_per_m2: 0.6, tuft: broad, seed: seed + 1, ..near.clone() };
     for (sward, middle) in [(near, Vec2::new(0.0, 0.3)), (far, Vec2::new(0.0, -22.2))] {
         let ground = GrassGround(Arc::new(move |at| ground::meadow_height_m(at + middle)));
         commands.spawn((
@@ -181,11 +181,11 @@ fn spawn_dusk(commands: &mut Commands, meshes: &mut Assets<Mesh>, materials: &mu
     let air = StandardMaterial { unlit: true, fog_enabled: false, cull_mode: None, ..default() };
     commands.spawn((Mesh3d(meshes.add(sky())), MeshMaterial3d(materials.add(air)), NotShadowCaster, NotShadowReceiver));
     commands.spawn((
-        DirectionalLight { illuminance: 34.0, color: Color::srgb(1.0, 0.62, 0.36), ..default() },
+        DirectionalLight { illuminance: 80.0, color: Color::srgb(1.0, 0.62, 0.36), ..default() },
         CascadeShadowConfigBuilder { num_cascades: 1, maximum_distance: 40.0, ..default() }.build(),
         Transform::from_translation(SUN).looking_at(Vec3::ZERO, Vec3::Y),
     ));
-    commands.insert_resource(GlobalAmbientLight { color: Color::srgb(0.55, 0.66, 1.0), brightness: 14.0, ..default() });
+    commands.insert_resource(GlobalAmbientLight { color: Color::srgb(0.70, 0.77, 1.0), brightness: 28.0, ..default() });
 }
 
 /// A dome whose colour goes from the horizon to the zenith, warm where the sun has set.

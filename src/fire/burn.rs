@@ -63,10 +63,11 @@ impl From<&Fire> for Burning {
 /// Kindles fires that are new or have changed. A millisecond at most, so it need not leave the frame.
 pub(super) fn kindle_fires(mut commands: Commands, fires: Query<(Entity, &Fire), Changed<Fire>>) {
     for (entity, fire) in &fires {
-        match fire.validate() {
-            Ok(()) => _ = commands.entity(entity).insert(Burning::from(fire)),
-            Err(error) => warn!("fire {entity}: {error}; the last good fire burns on"),
+        if let Err(error) = fire.validate() {
+            warn!("fire {entity}: {error}; the last good fire burns on");
+            continue;
         }
+        commands.entity(entity).insert(Burning::from(fire));
     }
 }
 

@@ -9,7 +9,6 @@ use super::{
 use bevy::{
     asset::RenderAssetUsages,
     camera::primitives::Aabb,
-    math::Vec3A,
     mesh::{Indices, MeshVertexAttribute, PrimitiveTopology, VertexFormat},
     prelude::*,
 };
@@ -92,14 +91,10 @@ fn colour(blade: &Blade, look: &GrassLook, s: f32) -> [f32; 4] {
 /// A box that holds the meadow in every wind.
 pub(super) fn bounds(meadow: &Meadow) -> Aabb {
     let reach = Vec3::splat(meadow.patch.sward.tuft.longest_m);
-    let (mut least, mut greatest) = (Vec3::ZERO, Vec3::ZERO);
-    for (number, blade) in meadow.blades.iter().enumerate() {
-        least = if number == 0 { blade.root } else { least.min(blade.root) };
-        greatest = if number == 0 { blade.root } else { greatest.max(blade.root) };
-    }
-    let aabb = Aabb::from_min_max(least - reach, greatest + reach);
-    debug_assert!(Vec3A::is_finite(aabb.half_extents));
-    aabb
+    let roots = || meadow.blades.iter().map(|blade| blade.root);
+    let least = roots().reduce(Vec3::min).unwrap_or_default();
+    let greatest = roots().reduce(Vec3::max).unwrap_or_default();
+    Aabb::from_min_max(least - reach, greatest + reach)
 }
 
 #[cfg(test)]

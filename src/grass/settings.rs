@@ -97,7 +97,7 @@ impl Default for GrassLook {
         Self {
             root_colour: [0.022, 0.042, 0.010],
             tip_colour: [0.20, 0.29, 0.065],
-            dry_colour: [0.42, 0.34, 0.15],
+            dry_colour: [0.31, 0.26, 0.11],
             translucency: 0.35,
             thins_from_m: 18.0,
             vanishes_at_m: 90.0,

@@ -48,7 +48,7 @@ pub struct SwayExtension {
     #[uniform(104)]
     pub leaf: LeafUniform,
     /// What they do over the year.
-    #[uniform(105)]
+    #[uniform(107)]
     pub season: SeasonUniform,
 }
 

@@ -46,6 +46,8 @@ const TURN: f32 = 6.283185307179586;
 const SOFT_RANKS: f32 = 0.15;
 // Farther than this share of the distance where all have vanished, they shrink.
 const SHRINKS_FROM: f32 = 0.7;
+// A blade that lies over turns its smooth face to the sky: so much lighter at most. It is what makes gusts seen from afar.
+const SHEEN: f32 = 1.2;
 // Flutter is full from this share of the half-bend speed on.
 const FULL_FLUTTER: f32 = 0.6;
 
@@ -105,16 +107,17 @@ fn swayed(in: Vertex, world_from_local: mat4x4<f32>, frames_ago: u32) -> Swayed 
 fn soft_normal(in: Vertex, now: Swayed) -> vec3<f32> {
     let face = cross(now.axis, now.side);
     let upper = select(face, -face, face.y < 0.0);
-    return normalize(vec3(0.0, 1.1, 0.0) + 0.7 * upper + 0.35 * in.uv.x * now.side);
+    return normalize(vec3(0.0, 0.85, 0.0) + 0.8 * upper + 0.35 * in.uv.x * now.side);
 }
 
-fn colour(in: Vertex) -> vec3<f32> {
+fn colour(in: Vertex, now: Swayed) -> vec3<f32> {
     let s = in.uv.y / f32(blade::LINKS);
     let fresh = mix(grass.root_colour.rgb, grass.tip_colour.rgb, s);
     // Dry blades are dark at the root as well, where their neighbours shade them.
     let dry = grass.dry_colour.rgb * mix(0.2, 1.0, s);
-    let own = 0.8 + 0.4 * fract(in.turn.w * 13.0);
-    return own * mix(fresh, dry, in.form.z);
+    let own = 0.85 + 0.3 * fract(in.turn.w * 13.0);
+    let sheen = 1.0 + SHEEN * s * (1.0 - now.axis.y);
+    return own * sheen * mix(fresh, dry, in.form.z);
 }
 
 @vertex
@@ -144,7 +147,7 @@ fn vertex(in: Vertex) -> VertexOutput {
 #endif
 
 #ifdef VERTEX_COLORS
-    out.color = vec4(colour(in), 1.0);
+    out.color = vec4(colour(in, now), 1.0);
 #endif
 
 // The main pass knows of the motion vectors, too, but does not write them.

@@ -27,7 +27,7 @@ struct LeafState {
     drifting: bool,
 }
 
-@group(#{MATERIAL_BIND_GROUP}) @binding(105) var<uniform> phenology: Phenology;
+@group(#{MATERIAL_BIND_GROUP}) @binding(107) var<uniform> phenology: Phenology;
 
 // `DROP` and `YOUTH` of `tree/phenology.rs`; a test holds them equal.
 const DROP: f32 = 0.014;
