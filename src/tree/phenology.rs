@@ -63,7 +63,7 @@ impl Default for Phenology {
 /// What a cluster of leaves looks like at a moment of the year, each 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeafState {
-    /// Size as a share of the grown leaf's; 0 before they unfold and after they have fallen.
+    /// How much of the leaves is there; 0 before they unfold and after they have fallen. The twigs of a spray stay.
     pub size: f32,
     /// How much of the colour is that of spring.
     pub youth: f32,

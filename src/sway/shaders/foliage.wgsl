@@ -1,12 +1,14 @@
 // The colour of leaves over the year; wood is shaded as any standard material. The prepass and the shadow pass need only
-// the mask and run Bevy's own fragment shader.
+// the mask: see `mask.wgsl`.
 
 #import bevy_pbr::forward_io::{FragmentOutput, VertexOutput}
 #import bevy_pbr::pbr_fragment::pbr_input_from_standard_material
 #import bevy_pbr::pbr_functions::{alpha_discard, apply_pbr_lighting, main_pass_post_lighting_processing}
 
 #ifdef WINDWOOD_LEAVES
-#import bevy_windwood::season
+#import bevy_pbr::mesh_view_bindings::view
+#import bevy_pbr::pbr_bindings::{base_color_sampler, base_color_texture}
+#import bevy_windwood::{leaf, season}
 #ifdef STANDARD_MATERIAL_NORMAL_MAP
 #import bevy_pbr::pbr_bindings::{normal_map_sampler, normal_map_texture}
 #endif
@@ -22,6 +24,16 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     visibility_range_dither(in.position, in.visibility_range_dither);
 #endif
     var pbr_input = pbr_input_from_standard_material(in, is_front);
+#ifdef WINDWOOD_LEAVES
+    if !leaf::is_billow() {
+        // The alpha of the vertices is no transparency here, and is taken out again.
+        let texel = textureSampleBias(base_color_texture, base_color_sampler, in.uv, view.mip_bias);
+        if !season::is_there(texel.rgb, in.uv, in.color.a) {
+            discard;
+        }
+        pbr_input.material.base_color.a = texel.a;
+    }
+#endif
     pbr_input.material.base_color = alpha_discard(pbr_input.material, pbr_input.material.base_color);
 #ifdef WINDWOOD_LEAVES
 #ifdef STANDARD_MATERIAL_NORMAL_MAP

@@ -20,10 +20,14 @@ struct LeafResponse {
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(104) var<uniform> response: LeafResponse;
 
-// What the mask's alpha is multiplied with: `silhouette_alpha` of `tree/crown/ellipsoids.rs`.
+// Whether the foliage is Gardner's ellipsoids and not sprays.
+fn is_billow() -> bool {
+    return response.silhouette > 0.5;
+}
+
+// What a billow's mask is multiplied with: `silhouette_alpha` of `tree/crown/ellipsoids.rs`.
 fn silhouette_alpha(facing: f32) -> f32 {
-    let alpha = 1.0 / (2.0 - min(facing * facing, 1.0));
-    return select(1.0, alpha, response.silhouette > 0.5);
+    return 1.0 / (2.0 - min(facing * facing, 1.0));
 }
 
 const TURN: f32 = 6.283185307179586;

@@ -1,5 +1,5 @@
-// What the prepass and the shadow pass show of a tree: as Bevy's own, but the mask counts the alpha of the vertices, too,
-// which lets billows grow transparent towards their outline. Normals are those of the vertices.
+// What the prepass and the shadow pass show of a tree: as Bevy's own, but billows grow transparent towards their outline,
+// and sprays show only those leaves that the season has. Normals are those of the vertices.
 
 #import bevy_pbr::mesh_view_bindings::view
 #import bevy_pbr::pbr_bindings::{base_color_sampler, base_color_texture, material}
@@ -7,11 +7,17 @@
 #import bevy_pbr::pbr_prepass_functions
 #import bevy_pbr::prepass_io
 
+#ifdef WINDWOOD_LEAVES
+#import bevy_windwood::{leaf, season}
+#endif
+
 fn cut_out(in: prepass_io::VertexOutput) {
 #ifdef VERTEX_UVS_A
 #ifdef WINDWOOD_LEAVES
-    let alpha = textureSampleBias(base_color_texture, base_color_sampler, in.uv, view.mip_bias).a * in.color.a;
-    if alpha < material.alpha_cutoff {
+    let texel = textureSampleBias(base_color_texture, base_color_sampler, in.uv, view.mip_bias);
+    let is_billow = leaf::is_billow();
+    let alpha = texel.a * select(1.0, in.color.a, is_billow);
+    if alpha < material.alpha_cutoff || (!is_billow && !season::is_there(texel.rgb, in.uv, in.color.a)) {
         discard;
     }
 #endif

@@ -80,6 +80,19 @@ fn leafness(light: vec3<f32>) -> f32 {
     return saturate(5.0 * (light.g - 0.5 * (light.r + light.b)) / max(sum, 1e-5));
 }
 
+// Leaves come and go one by one: a card is divided into so many cells each way, about a leaf each.
+const LEAVES_ACROSS: f32 = 9.0;
+
+fn cell_rank(uv: vec2<f32>) -> f32 {
+    let cell = floor(uv * LEAVES_ACROSS);
+    return fract(sin(dot(cell, vec2(12.9898, 78.233))) * 43758.547);
+}
+
+// Whether a texel of a spray is to be seen when that share of its leaves is there: twigs always are.
+fn is_there(texel: vec3<f32>, uv: vec2<f32>, share: f32) -> bool {
+    return share > 0.999 || leafness(texel) < 0.35 || share > 0.02 + 0.96 * cell_rank(uv);
+}
+
 // A texel of a leaf in summer, as it is in another season. `change` is youth (negative) or autumn (positive), `tone` where
 // between the two autumn colours. Light and dark of the texel stay.
 fn recoloured(summer: vec3<f32>, change: f32, tone: f32) -> vec3<f32> {

@@ -82,7 +82,9 @@ fn swayed(in: Vertex, tag: u32, tree: beam::TreeRow, first_pose: u32, leaf_time_
         let tumbled = beam::then(rotation, leaf::from_scaled_axis(vec3(0.9, 0.3, 0.5) * (2.5 * way.y)));
         return beam::Motion(carried.position + way.xyz + beam::rotate(tumbled, reach * way.w), tumbled);
     }
-    return beam::Motion(carried.position + beam::rotate(rotation, reach * state.size), rotation);
+    // Sprays keep their twigs and lose their leaves fragment by fragment; billows have none, and shrink.
+    let scale = select(1.0, state.size, leaf::is_billow());
+    return beam::Motion(carried.position + beam::rotate(rotation, reach * scale), rotation);
 #else
     return beam::carry(row, pose, in.sway.y, in.position);
 #endif
@@ -111,7 +113,7 @@ fn vertex(in: Vertex) -> VertexOutput {
 #ifdef WINDWOOD_LEAVES
     // Youth (negative) or autumn (positive), and where between the autumn's two colours.
     let state = state_of(in, tag);
-    out.uv_b = vec2(state.autumn - state.youth, saturate(0.5 + lag_of(in, tag) + 0.6 * (in.sway.z - 0.5)));
+    out.uv_b = vec2(state.autumn - state.youth, saturate(0.5 + 1.5 * lag_of(in, tag) + 0.5 * (in.sway.z - 0.5)));
 #endif
 #endif
 
@@ -133,7 +135,10 @@ fn vertex(in: Vertex) -> VertexOutput {
 #ifdef VERTEX_COLORS
     out.color = vec4(shade(in, tag), 1.0);
 #ifdef WINDWOOD_LEAVES
-    out.color.a = leaf::silhouette_alpha(dot(normal, direction_to_eye(out.world_position.xyz)));
+    // Billows: what the mask is multiplied with. Sprays: how much of the leaves is there.
+    let there = state_of(in, tag);
+    let outline = leaf::silhouette_alpha(dot(normal, direction_to_eye(out.world_position.xyz)));
+    out.color.a = select(select(there.size, 1.0, there.drifting), outline, leaf::is_billow());
 #endif
 #endif
 
