@@ -28,7 +28,8 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     if !leaf::is_billow() {
         // The alpha of the vertices is no transparency here, and is taken out again.
         let texel = textureSampleBias(base_color_texture, base_color_sampler, in.uv, view.mip_bias);
-        if !season::is_there(texel.rgb, in.uv, in.color.a) {
+        let span = fwidth(in.uv) * f32(textureDimensions(base_color_texture).x);
+        if !season::is_there(texel.rgb, in.uv, in.color.a, max(span.x, span.y)) {
             discard;
         }
         pbr_input.material.base_color.a = texel.a;

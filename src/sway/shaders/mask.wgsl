@@ -15,9 +15,10 @@ fn cut_out(in: prepass_io::VertexOutput) {
 #ifdef VERTEX_UVS_A
 #ifdef WINDWOOD_LEAVES
     let texel = textureSampleBias(base_color_texture, base_color_sampler, in.uv, view.mip_bias);
+    let span = fwidth(in.uv) * f32(textureDimensions(base_color_texture).x);
     let is_billow = leaf::is_billow();
     let alpha = texel.a * select(1.0, in.color.a, is_billow);
-    if alpha < material.alpha_cutoff || (!is_billow && !season::is_there(texel.rgb, in.uv, in.color.a)) {
+    if alpha < material.alpha_cutoff || (!is_billow && !season::is_there(texel.rgb, in.uv, in.color.a, max(span.x, span.y))) {
         discard;
     }
 #endif

@@ -88,9 +88,14 @@ fn cell_rank(uv: vec2<f32>) -> f32 {
     return fract(sin(dot(cell, vec2(12.9898, 78.233))) * 43758.547);
 }
 
-// Whether a texel of a spray is to be seen when that share of its leaves is there: twigs always are.
-fn is_there(texel: vec3<f32>, uv: vec2<f32>, share: f32) -> bool {
-    return share > 0.999 || leafness(texel) < 0.35 || share > 0.02 + 0.96 * cell_rank(uv);
+// Texels to a pixel up to which a bare twig is a line; beyond, only specks of it would pass the mask.
+const TWIG_TEXELS: f32 = 4.5;
+
+// Whether a texel of a spray is to be seen when that share of its leaves is there: the twigs of a bare one are, as long as
+// it is near. `texels` is how many of them a pixel covers.
+fn is_there(texel: vec3<f32>, uv: vec2<f32>, share: f32, texels: f32) -> bool {
+    let is_twig = leafness(texel) < 0.35 && (texels < TWIG_TEXELS || share > 0.5);
+    return share > 0.999 || is_twig || share > 0.02 + 0.96 * cell_rank(uv);
 }
 
 // A texel of a leaf in summer, as it is in another season. `change` is youth (negative) or autumn (positive), `tone` where
