@@ -39,7 +39,7 @@ pub fn print(mut app: App, options: &Options) -> Result<(), String> {
 
     let rows = rows(options);
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0) as u32;
-    let mut sheet = RgbaImage::from_pixel(width * columns, height * rows.len() as u32, image::Rgba([20, 20, 20, 255]));
+    let mut sheet = RgbaImage::from_pixel(width * columns, height * rows.len() as u32, image::Rgba([255; 4]));
     for (y, row) in (0u32..).zip(&rows) {
         for (x, shot) in (0u32..).zip(row) {
             let picture = take(&mut app, options, &target, shot)?;
