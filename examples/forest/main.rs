@@ -7,6 +7,10 @@
 //!
 //! `cargo run --example forest -- --help` lists the options.
 
+#[path = "../support/arguments.rs"]
+mod arguments;
+#[path = "../support/capture.rs"]
+mod capture;
 mod flight;
 mod ground;
 mod headless;
@@ -14,7 +18,7 @@ mod options;
 mod planting;
 mod scene;
 
-use bevy::{log::LogPlugin, prelude::*, render::RenderPlugin, window::ExitCondition, winit::WinitPlugin};
+use bevy::prelude::*;
 use bevy_windwood::prelude::*;
 use clap::Parser;
 use ground::Ground;
@@ -30,12 +34,12 @@ fn main() -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
-    let headless = options.headless || !has_display();
+    let headless = options.headless || !capture::has_display();
     if headless && !options.headless {
         println!("There is no display: writing pictures to `{}` instead.", options.out.display());
     }
     let mut app = App::new();
-    app.add_plugins((engine(&options, headless), WindwoodPlugins))
+    app.add_plugins((capture::engine("bevy_windwood: forest", options.size, headless), WindwoodPlugins))
         .insert_resource(Wind {
             speed: options.wind,
             direction: scene::wind_direction(&ground),
@@ -51,25 +55,4 @@ fn main() -> ExitCode {
         app.add_plugins(flight::plugin).run();
         ExitCode::SUCCESS
     }
-}
-
-/// Bevy with a window, or with none.
-fn engine(options: &Options, headless: bool) -> bevy::app::PluginGroupBuilder {
-    let (width, height) = options.size;
-    let window = Window { title: "bevy_windwood: forest".into(), resolution: (width, height).into(), ..default() };
-    let plugins = DefaultPlugins.set(LogPlugin { filter: "wgpu=error,naga=warn".into(), ..default() });
-    if !headless {
-        return plugins.set(WindowPlugin { primary_window: Some(window), ..default() });
-    }
-    plugins
-        .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
-        .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
-        .disable::<bevy::render::pipelined_rendering::PipelinedRenderingPlugin>()
-        .disable::<WinitPlugin>()
-}
-
-/// Whether a window can be opened. Only Linux has machines without a display as a rule.
-fn has_display() -> bool {
-    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-    !cfg!(target_os = "linux") || set("DISPLAY") || set("WAYLAND_DISPLAY")
 }

@@ -5,6 +5,8 @@
 //!
 //! `cargo run --example gallery -- --help` lists the options.
 
+#[path = "../support/arguments.rs"]
+mod arguments;
 #[path = "../support/capture.rs"]
 mod capture;
 mod options;

@@ -1,5 +1,6 @@
 //! What the gallery may be told on its command line.
 
+use crate::arguments::{size, wind_speed};
 use bevy::prelude::Resource;
 use bevy_windwood::prelude::*;
 use clap::{Parser, ValueEnum};
@@ -27,7 +28,7 @@ pub struct Options {
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=4))]
     pub supersample: u32,
     /// Mean wind speed at 10 m above ground, m/s: 0 to 75.
-    #[arg(long, default_value_t = 6.0)]
+    #[arg(long, default_value_t = 6.0, value_parser = wind_speed)]
     pub wind: f32,
     /// Chooses the individual.
     #[arg(long, default_value_t = 0)]
@@ -66,13 +67,5 @@ impl Options {
             Species::from_ron(&text).map_err(|error| format!("{}: {error}", path.display()))?;
         }
         Ok(())
-    }
-}
-
-fn size(text: &str) -> Result<(u32, u32), String> {
-    let parts = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
-    match parts {
-        Some((width, height)) if (1..=4096).contains(&width) && (1..=4096).contains(&height) => Ok((width, height)),
-        _ => Err("expected WIDTHxHEIGHT, each from 1 to 4096".to_owned()),
     }
 }

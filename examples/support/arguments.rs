@@ -1,0 +1,31 @@
+//! Values on the command line, read and checked: what the examples share.
+
+// Each of the examples uses a part of it.
+#![allow(dead_code)]
+
+/// A wind speed, m/s.
+pub fn wind_speed(text: &str) -> Result<f32, String> {
+    in_range(text, 0.0, 75.0, "m/s")
+}
+
+/// A time, s.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    in_range(text, 0.0, 1e6, "s").map(f64::from)
+}
+
+/// A number in a range.
+pub fn in_range(text: &str, low: f32, high: f32, unit: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(value) if (low..=high).contains(&value) => Ok(value),
+        _ => Err(format!("expected a number from {low} to {high} {unit}")),
+    }
+}
+
+/// A size in pixels, such as `960x540`.
+pub fn size(text: &str) -> Result<(u32, u32), String> {
+    let parts = text.split_once('x').and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
+    match parts {
+        Some((width, height)) if (1..=4096).contains(&width) && (1..=4096).contains(&height) => Ok((width, height)),
+        _ => Err("expected WIDTHxHEIGHT, each from 1 to 4096".to_owned()),
+    }
+}
