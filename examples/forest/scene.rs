@@ -14,7 +14,7 @@ use bevy::{
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
 use bevy_windwood::prelude::*;
-use noise::{NoiseFn, OpenSimplex};
+use bevy_windwood::texture::fourier::FourierTexture;
 
 /// What pictures of it are called.
 pub const NAME: &str = "forest";
@@ -157,24 +157,16 @@ fn sky() -> Mesh {
     dome
 }
 
-/// Blades and tufts of light and dark, neutral in colour: the ground's vertices have that. Mips are made here, because
+/// Blades and tufts of light and dark by a Fourier texture, neutral in colour: the ground's vertices have that. Mips are made here, because
 /// nothing else makes them.
 fn turf() -> Image {
     const SIZE: u32 = 256;
-    let noise = OpenSimplex::new(3);
-    // Tileable: the texture is a torus in four dimensions.
-    let octave = |u: f64, v: f64, cycles: f64| {
-        let circle = |t: f64| (std::f64::consts::TAU * t).sin_cos();
-        let ((a, b), (c, d)) = (circle(u), circle(v));
-        let radius = cycles / std::f64::consts::TAU;
-        noise.get([a * radius, b * radius, c * radius, d * radius])
-    };
+    let first_frequency_rad = 5.0 * std::f32::consts::TAU;
+    let waves = FourierTexture { first_frequency_rad, tiles: true, seed: 3, ..default() }.waves();
+    let blades = |place: Vec2| waves.as_ref().map_or(0.5, |waves| waves.at(place));
     let mut level: Vec<f32> = (0..SIZE * SIZE)
-        .map(|index| {
-            let (u, v) = (f64::from(index % SIZE) / f64::from(SIZE), f64::from(index / SIZE) / f64::from(SIZE));
-            let blades = 0.5 * octave(u, v, 40.0) + 0.3 * octave(u, v, 90.0) + 0.3 * octave(u, v, 12.0);
-            (0.8 + 0.42 * blades as f32).clamp(0.25, 1.0)
-        })
+        .map(|index| Vec2::new((index % SIZE) as f32, (index / SIZE) as f32) / SIZE as f32)
+        .map(|place| (0.55 + 0.55 * blades(place)).clamp(0.25, 1.0))
         .collect();
     let mut bytes = Vec::new();
     let mut side = SIZE as usize;

@@ -203,6 +203,59 @@ proptest! {
     }
 }
 
+prop_compose! {
+    fn zaharias_oak()(
+        (height_m, radius_m, delta) in (0.5_f32..60.0, 0.01_f32..2.0, 0.0_f32..=1.0),
+        (min_branch, more) in (0.0_f32..20.0, 0.0_f32..20.0),
+        (min_age_years, span_years) in (0.0_f32..200.0, 1.0_f32..500.0),
+        adjust_branch in prop::collection::vec(-1.0_f32..2.0, 0..=4),
+        (first_at, shortest) in (0.0_f32..=0.95, 0.0_f32..=1.0),
+        (first_angle_deg, last_angle_deg, angle_spread_deg) in (0.0_f32..150.0, 0.0_f32..150.0, 0.0_f32..60.0),
+    ) -> Growth {
+        Growth::Oak(Oak {
+            trunk: Trunk { height_m, radius_m, ..Trunk::default() },
+            delta_m: delta * height_m, min_branch, max_branch: min_branch + more,
+            min_age_years, max_age_years: min_age_years + span_years,
+            adjust_branch, first_at, shortest, first_angle_deg, last_angle_deg, angle_spread_deg,
+            ..Oak::default()
+        })
+    }
+}
+
+prop_compose! {
+    fn zaharias_fir()(
+        (height_m, radius_m, delta) in (0.5_f32..60.0, 0.01_f32..2.0, 0.0_f32..=1.0),
+        (min_floors, more, branching_factor) in (0.0_f32..40.0, 0.0_f32..40.0, 1_u32..=12),
+        (min_age_years, span_years) in (0.0_f32..200.0, 1.0_f32..500.0),
+        (adjust_branch, side_pairs) in ([-1.0_f32..2.0, -1.0_f32..2.0], 0.0_f32..20.0),
+        (first_at, shortest, sag) in (0.0_f32..=0.95, 0.0_f32..=1.0, -0.3_f32..0.3),
+        (first_angle_deg, last_angle_deg, side_angle_deg) in (0.0_f32..150.0, 0.0_f32..150.0, 0.0_f32..150.0),
+    ) -> Growth {
+        Growth::Fir(Fir {
+            trunk: Trunk { height_m, radius_m, ..Trunk::default() },
+            delta_m: delta * height_m, min_floors, max_floors: min_floors + more, branching_factor,
+            min_age_years, max_age_years: min_age_years + span_years,
+            adjust_branch, side_pairs, first_at, shortest, sag, first_angle_deg, last_angle_deg, side_angle_deg,
+            ..Fir::default()
+        })
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    #[test]
+    fn every_tree_of_zaharias_is_sound(
+        growth in prop_oneof![zaharias_oak(), zaharias_fir()],
+        age_years in 0.0_f32..800.0,
+        seed in any::<u64>(),
+    ) {
+        let species = Species { growth, ..Species::default() };
+        species.validate().unwrap();
+        check_skeleton(&species, &grow(&species, age_years, seed));
+    }
+}
+
 /// One species of each generator.
 fn of_all_kinds() -> Vec<Species> {
     let growths = [
