@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::{
     foliage::{CLUSTERS_LIMIT, Foliage},
     growth::{
-        Growth, LeafArrangement,
+        Growth, Phyllotaxis,
         aono_kunii::{AonoKunii, Branching, Shoot},
         damage::Damage,
         envelope::{Envelope, EnvelopeShape},
@@ -75,10 +75,10 @@ fn structures() -> impl Strategy<Value = AonoKunii> {
         })
     };
     let arrangements = prop::sample::select(vec![
-        LeafArrangement::Spiral,
-        LeafArrangement::Alternate,
-        LeafArrangement::Opposite,
-        LeafArrangement::Whorled(5),
+        Phyllotaxis::Spiral,
+        Phyllotaxis::Alternate,
+        Phyllotaxis::Opposite,
+        Phyllotaxis::Whorled(5),
     ]);
     let monopodial = (shoot(), shoot(), arrangements).prop_map(|(axis, lateral, arrangement)| Branching::Monopodial {
         axis,

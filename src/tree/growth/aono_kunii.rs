@@ -22,9 +22,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     age::Stage,
-    arrangement::LeafArrangement,
     envelope::{Envelope, EnvelopeShape},
     grower::{BEAMS_LIMIT, Bud, Grower, Habit, SHORTEST_BEAM_M, Wood, leave, lerp},
+    phyllotaxis::Phyllotaxis,
     reeves::Trunk,
 };
 use crate::tree::species::{SpeciesError, require};
@@ -83,7 +83,7 @@ pub enum Branching {
         /// What leaves it.
         lateral: Shoot,
         /// How laterals are arranged along the axis.
-        arrangement: LeafArrangement,
+        arrangement: Phyllotaxis,
     },
     /// Two shoots on either side.
     Dichotomous {
@@ -143,7 +143,7 @@ impl Default for Branching {
         Self::Monopodial {
             axis: Shoot { angle_deg: 0.0, length: 0.9, diameter: 0.85 },
             lateral: Shoot::default(),
-            arrangement: LeafArrangement::Spiral,
+            arrangement: Phyllotaxis::Spiral,
         }
     }
 }

@@ -17,15 +17,15 @@ use super::{
 
 pub mod age;
 pub mod aono_kunii;
-pub mod arrangement;
 pub mod damage;
 pub mod envelope;
 pub(super) mod grower;
+pub mod phyllotaxis;
 pub(super) mod pipes;
 pub mod reeves;
 pub mod zaharia;
 
-pub use arrangement::LeafArrangement;
+pub use phyllotaxis::Phyllotaxis;
 
 /// How a skeleton grows.
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]

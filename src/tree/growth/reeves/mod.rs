@@ -21,8 +21,8 @@ pub use super::grower::BEAMS_LIMIT;
 pub(in crate::tree) use super::grower::leave;
 use super::{
     age::Stage,
-    arrangement::GOLDEN_ANGLE_DEG,
     grower::{Branch, Bud, Grower, SHORTEST_BEAM_M, Wood, lerp},
+    phyllotaxis::GOLDEN_ANGLE_DEG,
 };
 
 mod parameters;

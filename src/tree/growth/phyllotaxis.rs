@@ -8,7 +8,7 @@ use crate::tree::species::{SpeciesError, require};
 /// Arrangement of leaves, or of the branches from their axils, on a shoot (Aono & Kunii 1984: alternate, opposite,
 /// whorled).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect, Serialize, Deserialize)]
-pub enum LeafArrangement {
+pub enum Phyllotaxis {
     /// One at a node, each turned by the golden angle from the one before: oak, poplar, willow.
     #[default]
     Spiral,
@@ -23,7 +23,7 @@ pub enum LeafArrangement {
 /// Turn from one leaf to the next in a spiral, degrees: the circle divided by the golden ratio squared.
 pub const GOLDEN_ANGLE_DEG: f32 = 137.507_77;
 
-impl LeafArrangement {
+impl Phyllotaxis {
     pub(in crate::tree) fn validate(&self) -> Result<(), SpeciesError> {
         match self {
             Self::Whorled(count) => require("Whorled", *count as f32, 3.0..=12.0),
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn whorls_stand_in_the_gaps_of_the_one_before() {
-        for arrangement in [LeafArrangement::Opposite, LeafArrangement::Whorled(3), LeafArrangement::Whorled(8)] {
+        for arrangement in [Phyllotaxis::Opposite, Phyllotaxis::Whorled(3), Phyllotaxis::Whorled(8)] {
             let count = arrangement.per_node();
             let gap_deg = 360.0 / count as f32;
             for sibling in 0..count {
@@ -80,9 +80,9 @@ mod tests {
     #[test]
     fn a_spiral_shades_no_leaf_below() {
         let apart = |a: f32, b: f32| ((a - b + 180.0).rem_euclid(360.0) - 180.0).abs();
-        let spiral = LeafArrangement::Spiral;
+        let spiral = Phyllotaxis::Spiral;
         let nearest = (1..13).map(|node| apart(spiral.roll_deg(node, 0), spiral.roll_deg(0, 0)));
         assert!(nearest.fold(f32::MAX, f32::min) > 15.0);
-        assert!(apart(LeafArrangement::Alternate.roll_deg(2, 0), 0.0) < 1e-3);
+        assert!(apart(Phyllotaxis::Alternate.roll_deg(2, 0), 0.0) < 1e-3);
     }
 }
