@@ -1,30 +1,17 @@
 //! How long a forest takes to plant, and a pattern to characterise.
 
+#[path = "../examples/support/forests.rs"]
+mod forests;
+
 use bevy::math::IVec2;
 use bevy_windwood::scatter::{
     ForestPlan, LevelGround, Planter,
     counts::{CountKind, Frequencies, by_likelihood, characterise},
-    plan::{Area, KeepOut, Shape},
+    plan::{Area, Shape},
 };
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use forests::{huge, shipped};
 use std::hint::black_box;
-
-fn shipped() -> ForestPlan {
-    ForestPlan::from_ron(include_str!("../assets/forests/mixed.forest.ron")).expect("the shipped forest is valid")
-}
-
-/// The shipped forest in a landscape of others.
-fn huge() -> ForestPlan {
-    let mut plan = shipped();
-    for number in 0..2000_u16 {
-        let [x, z] = [number % 50, number / 50].map(|step| 1000.0 + 1200.0 * f32::from(step));
-        let shape = Shape::Rectangle { min_m: [x, z], max_m: [x + 900.0, z + 900.0] };
-        plan.areas.push(Area { shape, ..Area::default() });
-        let points_m = (0..10_u8).map(|point| [x + 50.0 * f32::from(point), z + 30.0]).collect();
-        plan.keep_out.push(KeepOut::Path { points_m, width_m: 4.0 });
-    }
-    plan
-}
 
 /// A million trees in 6,241 cells.
 fn forest(criterion: &mut Criterion) {

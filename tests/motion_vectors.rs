@@ -15,7 +15,6 @@ use bevy::{
     render::{
         RenderApp,
         extract_resource::{ExtractResource, ExtractResourcePlugin},
-        gpu_readback::{Readback, ReadbackComplete},
         render_asset::RenderAssets,
         render_resource::{
             BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedComputePipelineId,
@@ -29,15 +28,11 @@ use bevy::{
     shader::Shader,
 };
 use bevy_windwood::{
-    dynamics::{BeamPose, TreePoser},
     prelude::*,
     tree::{TreeModel, foliage::Foliage, species::Wood},
 };
-use std::{
-    sync::{Arc, Mutex},
-    time::Duration,
-};
-use support::{headless_app, render_frame, update_until};
+use std::time::Duration;
+use support::{ReadBack, floats, headless_app, processor_poses, read_every_frame, render_frame, update_until};
 
 const SIZE: u32 = 512;
 /// Lower wood hardly moves, m.
@@ -137,8 +132,8 @@ struct Agreement {
 }
 
 fn compare(sway: &ActiveSway, model: &TreeModel, clip: Mat4, clock: WindClock, read: &[Vec2]) -> Agreement {
-    let now = poses(sway, model, clock.time_s);
-    let before = poses(sway, model, clock.previous_s);
+    let now = processor_poses(sway, model, &Transform::IDENTITY, clock.time_s);
+    let before = processor_poses(sway, model, &Transform::IDENTITY, clock.previous_s);
     let project = |point: Vec3| {
         let ndc = clip.project_point3(point);
         Vec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y)
@@ -171,38 +166,17 @@ fn median(mut values: Vec<f32>) -> f32 {
     values.get(values.len() / 2).copied().unwrap_or(f32::NAN)
 }
 
-/// The tree posed by the processor. It stands unturned at the origin.
-fn poses(sway: &ActiveSway, model: &TreeModel, time_s: f64) -> Vec<BeamPose> {
-    let mut poses = vec![BeamPose::REST; model.beams.len()];
-    let wind = sway.now().next().expect("a wind blows").response;
-    let frame = wind.field.frame();
-    let to_wind = Quat::from_mat3(&Mat3::from_cols(frame.along, Vec3::Y, frame.across)).inverse();
-    let classes = &wind.table.classes;
-    let poser = TreePoser::new(&model.beams, wind.basis.map(), classes, to_wind, 1.0);
-    let (column, tau_s) = wind.place(Vec3::ZERO, time_s);
-    let mut responses = vec![Vec4::ZERO; classes.count];
-    wind.table.responses(column, tau_s, &mut responses);
-    poser.pose(&responses, &mut poses);
-    poses
-}
-
 fn vectors(bytes: &[u8]) -> Vec<Vec2> {
-    let floats: Vec<f32> = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
-    floats.chunks_exact(2).map(Vec2::from_slice).collect()
+    floats(bytes).chunks_exact(2).map(Vec2::from_slice).collect()
 }
 
-fn install_probe(app: &mut App) -> Arc<Mutex<Option<Vec<u8>>>> {
-    let read: Arc<Mutex<Option<Vec<u8>>>> = Arc::default();
+fn install_probe(app: &mut App) -> ReadBack {
     let world = app.world_mut();
     let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wgsl(READ_SHADER, "read_motion.wgsl"));
     let buffer = ShaderBuffer::from(vec![Vec2::ZERO; (SIZE * SIZE) as usize]);
     let buffer = world.resource_mut::<Assets<ShaderBuffer>>().add(buffer);
-    let filled = read.clone();
-    world.spawn(Readback::buffer(buffer.clone())).observe(move |complete: On<ReadbackComplete>| {
-        *filled.lock().expect("nobody panics with it") = Some(complete.data.clone());
-    });
-    world.insert_resource(Probe { read: buffer, shader });
-    read
+    world.insert_resource(Probe { read: buffer.clone(), shader });
+    read_every_frame(world, buffer)
 }
 
 fn read_motion(

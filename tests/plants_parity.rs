@@ -9,7 +9,6 @@ use bevy::{
     render::{
         RenderApp,
         extract_resource::{ExtractResource, ExtractResourcePlugin},
-        gpu_readback::{Readback, ReadbackComplete},
         render_asset::RenderAssets,
         render_resource::{
             BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedComputePipelineId,
@@ -29,11 +28,8 @@ use bevy_windwood::{
     prelude::*,
     sway::StandTables,
 };
-use std::{
-    sync::{Arc, Mutex},
-    time::Duration,
-};
-use support::{headless_app, render_frame, update_until};
+use std::time::Duration;
+use support::{ReadBack, floats, headless_app, read_every_frame, render_frame, update_until};
 
 const HALF_BEND_SPEED_M_S: f32 = 10.0;
 
@@ -121,30 +117,30 @@ fn winds_and_bent_blades_agree_on_both_processors() {
     assert!(wind_error < 1e-2, "the two winds differ by {wind_error} m/s");
 }
 
-fn install_probe(app: &mut App, blades: &[Blade], winds: &[Vec2], places: &[Vec2]) -> Arc<Mutex<Option<Vec<u8>>>> {
+fn install_probe(app: &mut App, blades: &[Blade], winds: &[Vec2], places: &[Vec2]) -> ReadBack {
     let inputs = blades.iter().zip(winds).zip(places).flat_map(|((blade, wind), place)| {
         let turn = Vec4::new(blade.azimuth_rad, blade.lean_rad, blade.droop_rad, 0.0);
         [blade.root.extend(blade.length_m), turn, Vec4::new(wind.x, wind.y, place.x, place.y)]
     });
     let inputs: Vec<Vec4> = inputs.collect();
-    let read: Arc<Mutex<Option<Vec<u8>>>> = Arc::default();
     let world = app.world_mut();
     let tables = world.resource::<StandTables>().clone();
     let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wgsl(BEND_SHADER, "bend.wgsl"));
     let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
     let inputs = buffers.add(ShaderBuffer::from(inputs));
     let results = buffers.add(ShaderBuffer::from(vec![Vec4::ZERO; blades.len() * (LINKS + 2)]));
-    let filled = read.clone();
-    world.spawn(Readback::buffer(results.clone())).observe(move |complete: On<ReadbackComplete>| {
-        *filled.lock().expect("nobody panics with it") = Some(complete.data.clone());
+    world.insert_resource(Probe {
+        blades: inputs,
+        results: results.clone(),
+        tables,
+        shader,
+        count: blades.len() as u32,
     });
-    world.insert_resource(Probe { blades: inputs, results, tables, shader, count: blades.len() as u32 });
-    read
+    read_every_frame(world, results)
 }
 
 fn rows(bytes: &[u8]) -> Vec<Vec4> {
-    let floats: Vec<f32> = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
-    floats.chunks_exact(4).map(Vec4::from_slice).collect()
+    floats(bytes).chunks_exact(4).map(Vec4::from_slice).collect()
 }
 
 fn bend(

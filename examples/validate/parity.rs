@@ -14,7 +14,6 @@ use bevy::{
     render::{
         RenderApp,
         extract_resource::{ExtractResource, ExtractResourcePlugin},
-        gpu_readback::{Readback, ReadbackComplete},
         render_asset::RenderAssets,
         render_resource::{
             BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedComputePipelineId,
@@ -26,16 +25,8 @@ use bevy::{
     },
     shader::Shader,
 };
-use bevy_windwood::{
-    dynamics::{BeamPose, TreePoser},
-    prelude::*,
-    sway::StandTables,
-    tree::TreeModel,
-};
-use std::{
-    sync::{Arc, Mutex},
-    time::Duration,
-};
+use bevy_windwood::{prelude::*, sway::StandTables, tree::TreeModel};
+use std::time::Duration;
 
 /// Where the tree stands: nothing is special about it.
 const STANDS: Transform = Transform {
@@ -112,7 +103,7 @@ fn worst_differences() -> Result<(f64, f64), String> {
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
     for time_s in MOMENTS_S {
         *app.world_mut().resource_mut::<WindClock>() = WindClock { time_s, previous_s: time_s };
-        let posed = processor_poses(app.world().resource::<ActiveSway>(), &model, time_s);
+        let posed = support::processor_poses(app.world().resource::<ActiveSway>(), &model, &STANDS, time_s);
         let carried = read_back(&mut app, &read, vertices.len())?;
         for (vertex, there) in vertices.iter().zip(carried) {
             let (here, _) = posed[vertex.beam].carry(&model.beams[vertex.beam], vertex.s, vertex.at);
@@ -151,52 +142,27 @@ fn bound_points(model: &TreeModel) -> Vec<BoundPoint> {
     wood.chain(leaves.map(|(at, sway)| point(Vec3::from_slice(at), sway))).collect()
 }
 
-/// The same tree posed by the processor.
-fn processor_poses(sway: &ActiveSway, model: &TreeModel, time_s: f64) -> Vec<BeamPose> {
-    let mut poses = vec![BeamPose::REST; model.beams.len()];
-    if let Some(wind) = sway.now().next().map(|wind| wind.response) {
-        let frame = wind.field.frame();
-        let to_wind = Quat::from_mat3(&Mat3::from_cols(frame.along, Vec3::Y, frame.across)).inverse() * STANDS.rotation;
-        let classes = &wind.table.classes;
-        let poser = TreePoser::new(&model.beams, wind.basis.map(), classes, to_wind, STANDS.scale.y);
-        let (column, tau_s) = wind.place(STANDS.translation, time_s);
-        let mut responses = vec![Vec4::ZERO; classes.count];
-        wind.table.responses(column, tau_s, &mut responses);
-        poser.pose(&responses, &mut poses);
-    }
-    poses
-}
-
-type ReadBack = Arc<Mutex<Option<Vec<u8>>>>;
-
-fn install_probe(app: &mut App, vertices: &[BoundPoint]) -> ReadBack {
+fn install_probe(app: &mut App, vertices: &[BoundPoint]) -> support::ReadBack {
     let rows: Vec<Vec4> =
         vertices.iter().flat_map(|v| [v.at.extend(v.beam as f32), Vec4::new(v.s, 0.0, 0.0, 0.0)]).collect();
-    let read = ReadBack::default();
     let world = app.world_mut();
     let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wgsl(CARRY_SHADER, "carry_points.wgsl"));
     let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
     let points = buffers.add(ShaderBuffer::from(rows));
     let carried = buffers.add(ShaderBuffer::from(vec![Vec4::ZERO; vertices.len()]));
     let tables = world.resource::<StandTables>().clone();
-    let filled = read.clone();
-    world.spawn(Readback::buffer(carried.clone())).observe(move |complete: On<ReadbackComplete>| {
-        if let Ok(mut slot) = filled.lock() {
-            *slot = Some(complete.data.clone());
-        }
-    });
-    world.insert_resource(Probe { points, carried, shader, tables, vertices: vertices.len() as u32 });
-    read
+    world.insert_resource(Probe { points, carried: carried.clone(), shader, tables, vertices: vertices.len() as u32 });
+    support::read_every_frame(world, carried)
 }
 
 /// Lets the frames of a moment run until what was read is surely of that moment.
-fn read_back(app: &mut App, read: &ReadBack, count: usize) -> Result<Vec<Vec3>, String> {
+fn read_back(app: &mut App, read: &support::ReadBack, count: usize) -> Result<Vec<Vec3>, String> {
     const SETTLE_FRAMES: usize = 6;
     for _ in 0..SETTLE_FRAMES {
         support::render_frame(app)?;
     }
     let bytes = read.lock().ok().and_then(|mut slot| slot.take()).ok_or("nothing was read back")?;
-    let floats: Vec<f32> = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+    let floats = support::floats(&bytes);
     let points: Vec<Vec3> = floats.chunks_exact(4).map(Vec3::from_slice).collect();
     if points.len() == count && floats.iter().skip(3).step_by(4).all(|w| *w == 1.0) {
         Ok(points)

@@ -3,6 +3,9 @@
 //! The share of rejected patterns should be the level of the test: a generator that is always accepted is as wrong as one
 //! that is often rejected.
 
+#[path = "../support/forests.rs"]
+mod forests;
+
 use crate::report::Report;
 use bevy::math::{DVec2, IVec2};
 use bevy_windwood::scatter::{
@@ -10,9 +13,10 @@ use bevy_windwood::scatter::{
     counts::{
         CountKind, CountModel, Frequencies, by_likelihood, by_moments, characterise, dispersion, goodness_of_fit,
     },
-    plan::{Area, KeepOut, Shape},
+    plan::{Area, Shape},
     quadrat::{QuadratGrid, draw_counts, exact_counts, place_points},
 };
+use forests::{huge, shipped};
 use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::{collections::BTreeSet, time::Instant};
 
@@ -152,23 +156,6 @@ fn real_tables_right() -> f64 {
         characterise(&table).is_ok_and(|fits| fits.first().is_some_and(|fit| fit.law.model().kind() == *kind))
     };
     REAL_TABLES.iter().filter(|table| is_right(table)).count() as f64
-}
-
-fn shipped() -> ForestPlan {
-    ForestPlan::from_ron(include_str!("../../assets/forests/mixed.forest.ron")).expect("the shipped forest is valid")
-}
-
-/// The shipped forest in a landscape of others.
-fn huge() -> ForestPlan {
-    let mut plan = shipped();
-    for number in 0..2000_u16 {
-        let [x, z] = [number % 50, number / 50].map(|step| 1000.0 + 1200.0 * f32::from(step));
-        let shape = Shape::Rectangle { min_m: [x, z], max_m: [x + 900.0, z + 900.0] };
-        plan.areas.push(Area { shape, ..Area::default() });
-        let points_m = (0..10_u8).map(|point| [x + 50.0 * f32::from(point), z + 30.0]).collect();
-        plan.keep_out.push(KeepOut::Path { points_m, width_m: 4.0 });
-    }
-    plan
 }
 
 /// Plants that stand in cells of one size and not in those of another.

@@ -5,7 +5,7 @@ use super::{
     mesh::{ATTRIBUTE_BLADE, ATTRIBUTE_BLADE_TURN},
     settings::GrassLook,
 };
-use crate::sway::{FLUTTER_PERIOD_S, StandTables};
+use crate::sway::{FLUTTER_PERIOD_S, StandTables, define};
 use bevy::{
     mesh::MeshVertexBufferLayoutRef,
     pbr::{ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline},
@@ -118,12 +118,7 @@ impl MaterialExtension for GrassExtension {
             ATTRIBUTE_BLADE.at_shader_location(8),
             ATTRIBUTE_BLADE_TURN.at_shader_location(9),
         ])?];
-        for shader_def in ["WINDWOOD_GRASS", "VERTEX_COLORS"] {
-            descriptor.vertex.shader_defs.push(shader_def.into());
-            if let Some(fragment) = &mut descriptor.fragment {
-                fragment.shader_defs.push(shader_def.into());
-            }
-        }
+        define(descriptor, &["WINDWOOD_GRASS", "VERTEX_COLORS"]);
         Ok(())
     }
 }

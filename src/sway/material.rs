@@ -168,12 +168,18 @@ impl MaterialExtension for SwayExtension {
 
         // The second coordinates carry the season of a leaf to its fragments.
         let own: &[&str] = if leaves { &["WINDWOOD_LEAVES", "VERTEX_UVS_B"] } else { &[] };
-        for &shader_def in own.iter().chain(&["VERTEX_COLORS", "VERTEX_TANGENTS"]) {
-            descriptor.vertex.shader_defs.push(shader_def.into());
-            if let Some(fragment) = &mut descriptor.fragment {
-                fragment.shader_defs.push(shader_def.into());
-            }
-        }
+        define(descriptor, own);
+        define(descriptor, &["VERTEX_COLORS", "VERTEX_TANGENTS"]);
         Ok(())
+    }
+}
+
+/// Defines names for the vertex stage and, where there is one, the fragment stage.
+pub(crate) fn define(descriptor: &mut RenderPipelineDescriptor, names: &[&'static str]) {
+    for &name in names {
+        descriptor.vertex.shader_defs.push(name.into());
+        if let Some(fragment) = &mut descriptor.fragment {
+            fragment.shader_defs.push(name.into());
+        }
     }
 }

@@ -58,14 +58,18 @@ fn direction_to_eye(place: vec3<f32>) -> vec3<f32> {
 fn lag_of(in: Vertex, tag: u32) -> f32 {
     return (in.axis.w - 0.5) + (f32(tag >> TREE_BITS) / 255.0 - 0.5);
 }
-
-fn state_of(in: Vertex, tag: u32) -> season::LeafState {
-    return season::leaves(frame.year, lag_of(in, tag), in.sway.z);
-}
 #endif
 
 // The vertex where the wind has it, in tree-local space.
-fn swayed(in: Vertex, tag: u32, tree: beam::TreeRow, first_pose: u32, leaf_time_s: f32) -> beam::Motion {
+fn swayed(
+    in: Vertex,
+    tree: beam::TreeRow,
+    first_pose: u32,
+    leaf_time_s: f32,
+#ifdef WINDWOOD_LEAVES
+    state: season::LeafState,
+#endif
+) -> beam::Motion {
     let index = u32(in.sway.x + 0.5);
     let row = beams[tree.first_beam + index];
     let pose = poses[first_pose + tree.first_pose + index];
@@ -75,7 +79,6 @@ fn swayed(in: Vertex, tag: u32, tree: beam::TreeRow, first_pose: u32, leaf_time_
     let wind = poses[first_pose + tree.first_pose + tree.beam_count].tip_angle.xyz;
     let turn = leaf::turn(beam::rotate(carried.rotation, in.axis.xyz), wind, leaf_time_s, in.sway.z);
     let rotation = beam::then(carried.rotation, turn);
-    let state = state_of(in, tag);
     let reach = in.position - in.anchor.xyz;
     if state.drifting {
         let way = season::drift(wind, carried.position.y, leaf_time_s, in.sway.z);
@@ -96,7 +99,12 @@ fn vertex(in: Vertex) -> VertexOutput {
     let world_from_local = mesh_functions::get_world_from_local(in.instance_index);
     let tag = mesh_functions::get_tag(in.instance_index);
     let tree = tree_of(tag);
-    let now = swayed(in, tag, tree, frame.poses_now, frame.leaf_time.x);
+#ifdef WINDWOOD_LEAVES
+    let state = season::leaves(frame.year, lag_of(in, tag), in.sway.z);
+    let now = swayed(in, tree, frame.poses_now, frame.leaf_time.x, state);
+#else
+    let now = swayed(in, tree, frame.poses_now, frame.leaf_time.x);
+#endif
 
     out.world_position = world_from_local * vec4(now.position, 1.0);
     out.position = position_world_to_clip(out.world_position.xyz);
@@ -112,7 +120,6 @@ fn vertex(in: Vertex) -> VertexOutput {
 #ifdef VERTEX_UVS_B
 #ifdef WINDWOOD_LEAVES
     // Youth (negative) or autumn (positive), and where between the autumn's two colours.
-    let state = state_of(in, tag);
     out.uv_b = vec2(state.autumn - state.youth, saturate(0.5 + 1.5 * lag_of(in, tag) + 0.5 * (in.sway.z - 0.5)));
 #endif
 #endif
@@ -136,9 +143,8 @@ fn vertex(in: Vertex) -> VertexOutput {
     out.color = vec4(shade(in, tag), 1.0);
 #ifdef WINDWOOD_LEAVES
     // Billows: what the mask is multiplied with. Sprays: how much of the leaves is there.
-    let there = state_of(in, tag);
     let outline = leaf::silhouette_alpha(dot(normal, direction_to_eye(out.world_position.xyz)));
-    out.color.a = select(select(there.size, 1.0, there.drifting), outline, leaf::is_billow());
+    out.color.a = select(select(state.size, 1.0, state.drifting), outline, leaf::is_billow());
 #endif
 #endif
 
@@ -146,7 +152,11 @@ fn vertex(in: Vertex) -> VertexOutput {
 #ifdef PREPASS_PIPELINE
 #ifdef MOTION_VECTOR_PREPASS
     let before_from_local = mesh_functions::get_previous_world_from_local(in.instance_index);
-    let before = swayed(in, tag, tree, frame.poses_before, frame.leaf_time.y);
+#ifdef WINDWOOD_LEAVES
+    let before = swayed(in, tree, frame.poses_before, frame.leaf_time.y, state);
+#else
+    let before = swayed(in, tree, frame.poses_before, frame.leaf_time.y);
+#endif
     out.previous_world_position = before_from_local * vec4(before.position, 1.0);
 #endif
 #endif
