@@ -30,11 +30,14 @@
 //! | [`sway`] | trees in the wind, on the processor and in shaders | tree, wind, dynamics, texture |
 //! | [`grass`] | meadows that bend in the wind, [`GrassPatch`](grass::GrassPatch) | sway |
 //! | [`fire`] | fires that lean with it and give light, [`Fire`](fire::Fire) | sway, wind |
-//! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Heightfield`](terrain::Heightfield) | nobody |
+//! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Terrain`](terrain::Terrain) | texture |
 //! | [`scatter`] | point patterns and forest plans: where plants stand | nobody |
 
 mod schedule;
 mod setting;
+#[cfg(feature = "render")]
+mod shading;
+mod viewpoint;
 
 pub mod dynamics;
 pub mod fire;
@@ -48,16 +51,18 @@ pub mod wind;
 
 pub use schedule::WindwoodSystems;
 pub use setting::SettingError;
+pub use viewpoint::Viewpoint;
 
 use bevy::app::{PluginGroup, PluginGroupBuilder};
 
 /// What a game needs: `use bevy_windwood::prelude::*;`.
 pub mod prelude {
     pub use crate::{
-        WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
+        Viewpoint, WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
         fire::{Fire, FireLook, FireShape},
         grass::{GrassGround, GrassLook, GrassPatch, GrassResponse, Sward, Tuft},
         sway::{ActiveSway, SwaySettings},
+        terrain::{GroundLook, Heightfield, Terrain, TerrainSettings},
         tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Season, Species, Tree, TreeBeams, TreeLeaves},
         wind::{ActiveWind, Wind, WindCell, WindClock},
     };
@@ -74,6 +79,7 @@ impl PluginGroup for WindwoodPlugins {
             .add(sway::SwayDrawPlugin)
             .add(grass::GrassDrawPlugin)
             .add(fire::FireDrawPlugin)
+            .add(terrain::TerrainDrawPlugin)
             .add(wind::WindGizmoPlugin);
         group
     }

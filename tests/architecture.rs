@@ -10,7 +10,7 @@ const MAY_KNOW: [(&str, &[&str]); 9] = [
     ("wind", &[]),
     ("dynamics", &[]),
     ("texture", &[]),
-    ("terrain", &[]),
+    ("terrain", &["texture"]),
     ("scatter", &[]),
     ("tree", &["dynamics", "texture"]),
     ("sway", &["tree", "wind", "dynamics", "texture"]),
@@ -20,7 +20,7 @@ const MAY_KNOW: [(&str, &[&str]); 9] = [
 
 /// Files that glue a room to the engine. All others but those of `sway` are pure: they can be read beside the
 /// paper, and know no entities, systems or apps.
-const GLUE: [&str; 21] = [
+const GLUE: [&str; 25] = [
     "wind/cells.rs",
     "wind/clock.rs",
     "wind/current.rs",
@@ -41,11 +41,15 @@ const GLUE: [&str; 21] = [
     "fire/draw.rs",
     "fire/material.rs",
     "fire/mesh.rs",
+    "terrain/components.rs",
+    "terrain/material.rs",
+    "terrain/plugin.rs",
+    "terrain/stream.rs",
     "lib.rs",
 ];
 
-/// What pure code may take from the engine: mathematics, reflection, and the mark of an asset.
-const PURE_ENGINE: [&str; 4] = ["math", "reflect", "asset", "tasks"];
+/// What pure code may take from the engine: mathematics, reflection, collections, and the mark of an asset.
+const PURE_ENGINE: [&str; 5] = ["math", "reflect", "asset", "tasks", "platform"];
 
 fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")

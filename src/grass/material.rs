@@ -5,7 +5,10 @@ use super::{
     mesh::{ATTRIBUTE_BLADE, ATTRIBUTE_BLADE_TURN},
     settings::GrassLook,
 };
-use crate::sway::{FLUTTER_PERIOD_S, StandTables, define};
+use crate::{
+    shading::define,
+    sway::{FLUTTER_PERIOD_S, StandTables},
+};
 use bevy::{
     mesh::MeshVertexBufferLayoutRef,
     pbr::{ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline},

@@ -10,7 +10,7 @@ use super::{
     stand::Stand,
     upload::StandBuffers,
 };
-use crate::texture::TextureData;
+use crate::shading::{ALL_MIPS, image};
 use crate::tree::{
     Grove, Species, SpeciesBaked, TreeModel,
     bark::BarkTextures,
@@ -22,11 +22,10 @@ use crate::tree::{
 use bevy::{
     asset::RenderAssetUsages,
     camera::primitives::Aabb,
-    image::{ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor},
+    image::ImageAddressMode,
     mesh::{Indices, PrimitiveTopology},
     platform::collections::HashMap,
     prelude::*,
-    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
 };
 
@@ -216,10 +215,10 @@ impl Atelier<'_> {
     }
 
     fn bark_material(&mut self, textures: &BarkTextures) -> StandardMaterial {
-        let surface = self.images.add(image(&textures.surface, ImageAddressMode::Repeat));
+        let surface = self.images.add(image(&textures.surface, ImageAddressMode::Repeat, ALL_MIPS));
         StandardMaterial {
-            base_color_texture: Some(self.images.add(image(&textures.base_colour, ImageAddressMode::Repeat))),
-            normal_map_texture: Some(self.images.add(image(&textures.normal, ImageAddressMode::Repeat))),
+            base_color_texture: Some(self.images.add(image(&textures.base_colour, ImageAddressMode::Repeat, ALL_MIPS))),
+            normal_map_texture: Some(self.images.add(image(&textures.normal, ImageAddressMode::Repeat, ALL_MIPS))),
             occlusion_texture: Some(surface.clone()),
             metallic_roughness_texture: Some(surface),
             perceptual_roughness: 1.0,
@@ -230,9 +229,14 @@ impl Atelier<'_> {
 
     fn foliage_material(&mut self, species: &Species, textures: &SpeciesTextures) -> StandardMaterial {
         let normals = textures.foliage_normal.as_ref();
-        let normals = normals.map(|normals| self.images.add(image(normals, ImageAddressMode::ClampToEdge)));
+        let normals =
+            normals.map(|normals| self.images.add(image(normals, ImageAddressMode::ClampToEdge, FOLIAGE_LOD_LIMIT)));
         StandardMaterial {
-            base_color_texture: Some(self.images.add(image(&textures.foliage, ImageAddressMode::ClampToEdge))),
+            base_color_texture: Some(self.images.add(image(
+                &textures.foliage,
+                ImageAddressMode::ClampToEdge,
+                FOLIAGE_LOD_LIMIT,
+            ))),
             normal_map_texture: normals,
             alpha_mode: AlphaMode::Mask(0.5),
             // Normals lean out of the crown for soft shading: flipping them for the back of a card would spoil that.
@@ -250,25 +254,6 @@ impl Atelier<'_> {
 /// Coarsest mip of masked foliage that is used: beyond it a spray is a few texels, between which no alpha passes the mask,
 /// and distant crowns would go bare.
 const FOLIAGE_LOD_LIMIT: f32 = 3.0;
-
-fn image(texture: &TextureData, address_mode: ImageAddressMode) -> Image {
-    let format = if texture.srgb { TextureFormat::Rgba8UnormSrgb } else { TextureFormat::Rgba8Unorm };
-    let size = Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: 1 };
-    let mut image = Image::new_uninit(size, TextureDimension::D2, format, RenderAssetUsages::RENDER_WORLD);
-    image.texture_descriptor.mip_level_count = texture.mips.len() as u32;
-    image.data = Some(texture.mips.concat());
-    image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
-        address_mode_u: address_mode,
-        address_mode_v: address_mode,
-        mag_filter: ImageFilterMode::Linear,
-        min_filter: ImageFilterMode::Linear,
-        mipmap_filter: ImageFilterMode::Linear,
-        // Only foliage is clamped at its edges, and only foliage is masked.
-        lod_max_clamp: if address_mode == ImageAddressMode::ClampToEdge { FOLIAGE_LOD_LIMIT } else { 32.0 },
-        ..default()
-    });
-    image
-}
 
 fn wood_mesh(wood: WoodVertices) -> Mesh {
     Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)

@@ -1,7 +1,7 @@
 //! The material that poses trees in the vertex shader.
 
 use super::active::FLUTTER_PERIOD_S;
-use crate::{dynamics::leaf::LeafResponse, tree::phenology::Phenology};
+use crate::{dynamics::leaf::LeafResponse, shading::define, tree::phenology::Phenology};
 use bevy::{
     mesh::{MeshVertexAttribute, MeshVertexBufferLayoutRef, VertexFormat},
     pbr::{ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline},
@@ -171,15 +171,5 @@ impl MaterialExtension for SwayExtension {
         define(descriptor, own);
         define(descriptor, &["VERTEX_COLORS", "VERTEX_TANGENTS"]);
         Ok(())
-    }
-}
-
-/// Defines names for the vertex stage and, where there is one, the fragment stage.
-pub(crate) fn define(descriptor: &mut RenderPipelineDescriptor, names: &[&'static str]) {
-    for &name in names {
-        descriptor.vertex.shader_defs.push(name.into());
-        if let Some(fragment) = &mut descriptor.fragment {
-            fragment.shader_defs.push(name.into());
-        }
     }
 }

@@ -35,8 +35,6 @@ pub use plugin::SwayPlugin;
 pub use response::{SwaySettings, WindResponse};
 
 #[cfg(feature = "render")]
-pub(crate) use material::define;
-#[cfg(feature = "render")]
 pub use {
     draw::{DrawPath, Foliage},
     draw_plugin::SwayDrawPlugin,

@@ -38,6 +38,12 @@ impl<T: Heightfield + ?Sized> Heightfield for Arc<T> {
     }
 }
 
+/// What grows on the ground, seen from afar.
+pub trait Cover: Send + Sync {
+    /// Share of the ground about a place that is under trees, 0 to 1.
+    fn share(&self, place: DVec2) -> f32;
+}
+
 /// The sum of several grounds, such as hills formed by hand with random detail; empty, the plane at elevation 0.
 #[derive(Clone, Default)]
 pub struct Layers(pub Vec<Arc<dyn Heightfield>>);

@@ -27,10 +27,15 @@
 //! # }
 //! ```
 //!
-//! Everything in this room is plain arithmetic without an app.
+//! 5. [`Terrain`] is ground as an entity: a pyramid of [`chunk`]s about every [`Viewpoint`](crate::Viewpoint), finer where
+//!    somebody is near ([`pyramid`]), built in the background.
+//!
+//! All but `components`, `material`, `stream` and `plugin` is plain arithmetic without an app.
 
 mod autocorrelation;
 mod bessel_integrals;
+pub mod chunk;
+mod components;
 mod covariance;
 mod drift;
 mod elevation_file;
@@ -38,14 +43,24 @@ mod elevation_grid;
 mod elevation_map;
 mod error;
 mod fit;
+#[cfg(feature = "render")]
+mod ground_texture;
 mod heightfield;
 mod line_process;
+#[cfg(feature = "render")]
+mod material;
+#[cfg(feature = "render")]
+mod plugin;
+pub mod pyramid;
 mod settings;
 mod spline_ground;
 mod strata;
+#[cfg(feature = "render")]
+mod stream;
 mod turning_bands;
 mod variogram;
 
+pub use components::{GroundLook, Terrain, TerrainSettings};
 pub use covariance::CovarianceModel;
 pub use drift::{Drift, FoundDrift};
 pub use elevation_file::{ElevationScale, RawSample};
@@ -53,8 +68,13 @@ pub use elevation_grid::ElevationGrid;
 pub use elevation_map::{ElevationMap, Interpolation, MapPlacement};
 pub use error::TerrainError;
 pub use fit::{Fit, fit_model, fit_models};
-pub use heightfield::{Heightfield, Layers};
+pub use heightfield::{Cover, Heightfield, Layers};
 pub use settings::{Anisotropy, TurningBandsSettings};
 pub use spline_ground::{SplineGround, SplineGroundSettings, SplinePatch};
 pub use turning_bands::TurningBands;
 pub use variogram::{LagClass, Variogram, VariogramSettings};
+#[cfg(feature = "render")]
+pub use {
+    plugin::TerrainDrawPlugin,
+    stream::{TerrainChunk, TerrainChunks},
+};

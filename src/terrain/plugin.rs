@@ -1,0 +1,27 @@
+//! Registers the drawing of the ground.
+
+use super::{
+    components::{GroundLook, TerrainSettings},
+    material::GroundMaterial,
+    stream::{GroundTexture, begin_terrains, recolour, stream_ground},
+};
+use crate::schedule::WindwoodSystems;
+use bevy::{asset::embedded_asset, pbr::MaterialPlugin, prelude::*, render::RenderApp};
+
+/// Draws [`Terrain`](super::Terrain). Without a renderer it does nothing.
+pub struct TerrainDrawPlugin;
+
+impl Plugin for TerrainDrawPlugin {
+    fn build(&self, app: &mut App) {
+        if app.get_sub_app(RenderApp).is_none() {
+            return;
+        }
+        embedded_asset!(app, "shaders/ground.wgsl");
+        embedded_asset!(app, "shaders/ground_colour.wgsl");
+        app.add_plugins((MaterialPlugin::<GroundMaterial>::default(), crate::viewpoint::plugin))
+            .register_type::<TerrainSettings>()
+            .register_type::<GroundLook>()
+            .init_resource::<GroundTexture>()
+            .add_systems(Update, (begin_terrains, recolour, stream_ground).chain().in_set(WindwoodSystems::Grow));
+    }
+}

@@ -1,0 +1,95 @@
+// What the ground looks like: grass, earth, rock and snow by slope and height, and woods.
+
+#import bevy_pbr::forward_io::{FragmentOutput, VertexOutput}
+#import bevy_pbr::mesh_view_bindings::view
+#import bevy_pbr::pbr_fragment::pbr_input_from_standard_material
+#import bevy_pbr::pbr_functions::{apply_pbr_lighting, main_pass_post_lighting_processing}
+
+#ifdef VISIBILITY_RANGE_DITHER
+#import bevy_pbr::pbr_functions::visibility_range_dither
+#endif
+
+// `LookUniform` of `terrain/material.rs`. Colours are linear.
+struct Look {
+    grass: vec4<f32>,
+    dry_grass: vec4<f32>,
+    earth: vec4<f32>,
+    rock: vec4<f32>,
+    snow: vec4<f32>,
+    litter: vec4<f32>,
+    canopy: vec4<f32>,
+    // 1 - cosine of the slopes between which the ground grows bare.
+    bare_from: f32,
+    bare_to: f32,
+    grass_line_m: f32,
+    snow_line_m: f32,
+    line_blur_m: f32,
+    per_texture_m: f32,
+    canopy_from_m: f32,
+    padding: f32,
+}
+
+@group(#{MATERIAL_BIND_GROUP}) @binding(100) var<uniform> look: Look;
+// Red: blades; green: clods; blue: seams in rock; alpha: patches. All are light and dark about 1/2.
+@group(#{MATERIAL_BIND_GROUP}) @binding(101) var detail: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(102) var detail_sampler: sampler;
+
+// Repeats of the texture: no two have a common measure, and they are turned against one another, so that the eye finds no
+// period.
+const MIDDLE: mat2x2<f32> = mat2x2(0.0642, 0.0437, -0.0437, 0.0642);
+const WIDE: mat2x2<f32> = mat2x2(0.0041, -0.0067, 0.0067, 0.0041);
+
+// The colour and the light on it that gets lost between blades and clods.
+fn ground_colour(place: vec3<f32>, normal: vec3<f32>, covered: f32, distance: f32) -> vec3<f32> {
+    let uv = place.xz * look.per_texture_m;
+    let near = textureSample(detail, detail_sampler, uv);
+    let middle = textureSample(detail, detail_sampler, MIDDLE * uv);
+    let wide = textureSample(detail, detail_sampler, WIDE * uv);
+    // Seams of rock follow the height, so that cliffs are not smeared.
+    let strata = textureSample(detail, detail_sampler, vec2(0.11 * (uv.x + uv.y), 0.31 * place.y * look.per_texture_m));
+
+    // What breaks up every border, -1..1.
+    let ragged = (middle.a - 0.5) + (wide.a - 0.5) + 0.5 * (middle.g - 0.5);
+    let slope = 1.0 - normal.y;
+    let span = look.bare_to - look.bare_from;
+
+    let dryness = smoothstep(-0.5, 0.7, ragged + 0.4 * (wide.r - 0.5))
+        + smoothstep(-1.0, 1.0, (place.y - look.grass_line_m) / look.line_blur_m + ragged);
+    let blades = 0.45 + 0.75 * mix(near.r, middle.r, 0.4);
+    var colour = mix(look.grass.rgb, look.dry_grass.rgb, saturate(dryness)) * blades;
+
+    let floor = look.litter.rgb * (0.55 + 0.8 * near.g);
+    colour = mix(colour, floor, smoothstep(0.15, 0.75, covered + 0.35 * ragged * covered));
+
+    let clods = 0.6 + 0.8 * mix(near.g, middle.g, 0.5);
+    let bare = smoothstep(look.bare_from - 0.25 * span, look.bare_from + 0.5 * span, slope + 0.35 * span * ragged + 0.15 * span * (near.g - 0.5));
+    colour = mix(colour, look.earth.rgb * clods, bare);
+
+    let seams = 0.4 + 0.7 * mix(strata.b, middle.b, 0.35) + 0.35 * (near.b - 0.5);
+    let stony = smoothstep(look.bare_to - 0.5 * span, look.bare_to + 0.25 * span, slope + 0.3 * span * ragged + 0.2 * span * (strata.b - 0.5));
+    colour = mix(colour, look.rock.rgb * seams, stony);
+
+    // Crowns far away: dark between, light on top. They hide what is under them.
+    let crowns = 0.35 + 0.95 * middle.g * (0.6 + 0.8 * wide.r);
+    let closed = smoothstep(0.1, 0.6, covered + 0.3 * ragged * covered) * smoothstep(0.75, 1.15, distance / max(look.canopy_from_m, 1e-3));
+    colour = mix(colour, look.canopy.rgb * crowns, closed);
+
+    let steep = smoothstep(look.bare_to - span, look.bare_to + span, slope + 0.2 * span * (strata.b - 0.5));
+    let snowy = smoothstep(-0.5, 0.5, (place.y - look.snow_line_m) / look.line_blur_m + 0.8 * ragged - 2.0 * steep);
+    return mix(colour, look.snow.rgb * (0.9 + 0.1 * near.g), snowy);
+}
+
+@fragment
+fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
+#ifdef VISIBILITY_RANGE_DITHER
+    visibility_range_dither(in.position, in.visibility_range_dither);
+#endif
+    var pbr_input = pbr_input_from_standard_material(in, is_front);
+    let place = in.world_position.xyz;
+    let colour = ground_colour(place, normalize(in.world_normal), in.color.a, distance(place, view.world_position));
+    pbr_input.material.base_color = vec4(colour, 1.0);
+    var out: FragmentOutput;
+    out.color = apply_pbr_lighting(pbr_input);
+    out.color = main_pass_post_lighting_processing(pbr_input, out.color);
+    return out;
+}

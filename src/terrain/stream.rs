@@ -1,0 +1,238 @@
+//! Builds the ground about the viewers in the background, and shows it.
+
+use super::{
+    chunk::{COARSEST_NEIGHBOUR, ChunkKey, ChunkVertices, chunk_vertices},
+    components::{GroundLook, Terrain, TerrainSettings},
+    ground_texture::ground_texture,
+    material::{ATTRIBUTE_MARKS, GroundMaterial, ground_material},
+    pyramid::{Eye, Pyramid},
+};
+use crate::{
+    shading::{ALL_MIPS, image},
+    viewpoint::Viewpoints,
+};
+use bevy::{
+    asset::RenderAssetUsages,
+    camera::{primitives::Aabb, visibility::NoAutoAabb},
+    image::ImageAddressMode,
+    mesh::{Indices, MeshTag, PrimitiveTopology},
+    platform::collections::HashMap,
+    prelude::*,
+    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+};
+
+/// The chunks of a [`Terrain`].
+#[derive(Component)]
+pub struct TerrainChunks {
+    pyramid: Pyramid,
+    /// Settings in force: the last that were valid.
+    settings: TerrainSettings,
+    material: Handle<GroundMaterial>,
+    building: Vec<(ChunkKey, Task<Built>)>,
+    chunks: HashMap<ChunkKey, Entity>,
+    eyes: Vec<Eye>,
+    looked_from: Vec<Eye>,
+    is_complete: bool,
+}
+
+struct Built {
+    mesh: Mesh,
+    bounds: Aabb,
+}
+
+impl TerrainChunks {
+    /// Whether all ground that is wanted from where the viewers are is drawn.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.is_complete
+    }
+
+    /// Number of chunks that are drawn.
+    #[must_use]
+    pub fn drawn(&self) -> usize {
+        self.pyramid.drawn().len()
+    }
+}
+
+/// One chunk of drawn ground, a child of its [`Terrain`].
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TerrainChunk(pub ChunkKey);
+
+/// The texture of all ground.
+#[derive(Resource)]
+pub(super) struct GroundTexture(Handle<Image>);
+
+impl FromWorld for GroundTexture {
+    fn from_world(world: &mut World) -> Self {
+        let image = image(&ground_texture(), ImageAddressMode::Repeat, ALL_MIPS);
+        Self(world.resource_mut::<Assets<Image>>().add(image))
+    }
+}
+
+/// What all chunks depend on.
+type NewGround = Or<(Changed<Terrain>, Changed<TerrainSettings>)>;
+
+/// Begins anew with terrains that are new or were changed.
+pub(super) fn begin_terrains(
+    mut commands: Commands,
+    texture: Res<GroundTexture>,
+    mut materials: ResMut<Assets<GroundMaterial>>,
+    changed: Query<(Entity, &TerrainSettings, &GroundLook, Option<&TerrainChunks>), NewGround>,
+) {
+    for (entity, wanted, look, before) in &changed {
+        let settings = match wanted.validate() {
+            Ok(()) => *wanted,
+            Err(error) => {
+                let last = before.map_or_else(TerrainSettings::default, |before| before.settings);
+                warn!("terrain settings: {error}; {last:?} are used");
+                last
+            }
+        };
+        for chunk in before.into_iter().flat_map(|before| before.chunks.values()) {
+            commands.entity(*chunk).despawn();
+        }
+        let look = if look.validate().is_ok() { *look } else { GroundLook::default() };
+        let material = before.map(|before| before.material.clone());
+        commands.entity(entity).insert(TerrainChunks {
+            pyramid: Pyramid::new(settings.shape()),
+            settings,
+            material: material.unwrap_or_else(|| materials.add(ground_material(&look, texture.0.clone()))),
+            building: Vec::new(),
+            chunks: HashMap::default(),
+            eyes: Vec::new(),
+            looked_from: Vec::new(),
+            is_complete: false,
+        });
+    }
+}
+
+/// Recolours ground whose look was changed.
+pub(super) fn recolour(
+    texture: Res<GroundTexture>,
+    mut materials: ResMut<Assets<GroundMaterial>>,
+    changed: Query<(&GroundLook, &TerrainChunks), Changed<GroundLook>>,
+) {
+    for (look, chunks) in &changed {
+        match look.validate() {
+            Ok(()) => {
+                if let Some(mut material) = materials.get_mut(&chunks.material) {
+                    *material = ground_material(look, texture.0.clone());
+                }
+            }
+            Err(error) => warn!("look of the ground: {error}; the last good one stays"),
+        }
+    }
+}
+
+/// Finds out what is wanted, takes over what was built, and starts building what is missing.
+pub(super) fn stream_ground(
+    mut commands: Commands,
+    viewpoints: Viewpoints,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut terrains: Query<(Entity, &Terrain, &mut TerrainChunks)>,
+    mut shown: Query<(&TerrainChunk, &mut Visibility, &mut MeshTag)>,
+) {
+    for (entity, terrain, mut chunks) in &mut terrains {
+        let chunks = &mut *chunks;
+        let mut changed = chunks.look(terrain, &viewpoints);
+        let forgotten: Vec<Entity> = chunks.pyramid.forgotten().filter_map(|key| chunks.chunks.remove(&key)).collect();
+        forgotten.into_iter().for_each(|chunk| commands.entity(chunk).despawn());
+        changed |= chunks.receive(entity, &mut commands, &mut meshes);
+        chunks.build(terrain);
+        chunks.is_complete = chunks.building.is_empty() && chunks.pyramid.is_complete();
+        if changed {
+            chunks.pyramid.draw();
+            chunks.show(&mut shown);
+        }
+    }
+}
+
+impl TerrainChunks {
+    /// Looks again when a viewer has moved by half a cell; whether anything may have changed.
+    fn look(&mut self, terrain: &Terrain, viewpoints: &Viewpoints) -> bool {
+        let eye = |at: Vec3| {
+            let place = at.as_dvec3().xz();
+            Eye { place, above_ground_m: (f64::from(at.y) - terrain.ground.height_m(place)).max(0.0) }
+        };
+        self.eyes.clear();
+        self.eyes.extend(viewpoints.iter().map(eye));
+        let half_a_cell = 0.5 * f64::from(self.settings.finest_cell_m);
+        let rests = |(now, then): (&Eye, &Eye)| {
+            now.place.distance(then.place).max((now.above_ground_m - then.above_ground_m).abs()) < half_a_cell
+        };
+        if self.eyes.len() == self.looked_from.len() && self.eyes.iter().zip(&self.looked_from).all(rests) {
+            return false;
+        }
+        self.looked_from.clone_from(&self.eyes);
+        self.pyramid.look(&self.eyes);
+        true
+    }
+
+    /// Takes over chunks that are ready, as many as a frame may; whether there were any.
+    fn receive(&mut self, terrain: Entity, commands: &mut Commands, meshes: &mut Assets<Mesh>) -> bool {
+        let mut room = self.settings.chunks_per_frame;
+        let before = room;
+        let Self { building, pyramid, chunks, material, settings, .. } = self;
+        building.retain_mut(|(key, task)| {
+            let built = if room > 0 { block_on(poll_once(task)) } else { None };
+            let Some(built) = built else { return true };
+            room -= 1;
+            if pyramid.receive(*key) {
+                let corner = key.corner_m(f64::from(settings.finest_cell_m)).as_vec2();
+                let chunk = commands.spawn((
+                    TerrainChunk(*key),
+                    ChildOf(terrain),
+                    Transform::from_xyz(corner.x, 0.0, corner.y),
+                    Visibility::Hidden,
+                    Mesh3d(meshes.add(built.mesh)),
+                    MeshMaterial3d(material.clone()),
+                    MeshTag(0),
+                    built.bounds,
+                    NoAutoAabb,
+                ));
+                chunks.insert(*key, chunk.id());
+            }
+            false
+        });
+        room < before
+    }
+
+    fn build(&mut self, terrain: &Terrain) {
+        while self.building.len() < self.settings.builds_at_once as usize {
+            let Some(key) = self.pyramid.next() else { break };
+            let (terrain, cell_m) = (terrain.clone(), f64::from(self.settings.finest_cell_m));
+            let task = AsyncComputeTaskPool::get().spawn(async move {
+                let vertices = chunk_vertices(&terrain.ground, terrain.cover.as_deref(), key, cell_m);
+                let side_m = key.side_m(cell_m) as f32;
+                let bounds = Aabb::from_min_max(
+                    Vec3::new(0.0, vertices.lowest_m, 0.0),
+                    Vec3::new(side_m, vertices.highest_m, side_m),
+                );
+                Built { mesh: chunk_mesh(vertices), bounds }
+            });
+            self.building.push((key, task));
+        }
+    }
+
+    /// Shows the chunks that are drawn, with their seams, and hides all others.
+    fn show(&self, shown: &mut Query<(&TerrainChunk, &mut Visibility, &mut MeshTag)>) {
+        for (key, entity) in &self.chunks {
+            // One that was spawned in this frame is there from the next on.
+            let Ok((_, mut visibility, mut tag)) = shown.get_mut(*entity) else { continue };
+            let seams = self.pyramid.seams(*key);
+            visibility.set_if_neq(if seams.is_some() { Visibility::Inherited } else { Visibility::Hidden });
+            if let Some(seams) = seams {
+                tag.set_if_neq(MeshTag(seams.0));
+            }
+        }
+    }
+}
+
+fn chunk_mesh(vertices: ChunkVertices) -> Mesh {
+    const { assert!(COARSEST_NEIGHBOUR < 8, "three bits of a gap's code") };
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, vertices.positions)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, vertices.normals)
+        .with_inserted_attribute(ATTRIBUTE_MARKS, vertices.marks)
+        .with_inserted_indices(Indices::U32(vertices.indices))
+}

@@ -1,0 +1,32 @@
+//! From where the world is looked at.
+
+use bevy::prelude::*;
+
+/// A place about which ground and forest are kept fine. Every `Camera3d` has one; on a server give it to the players. A
+/// camera that is switched off does not count.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Component, Default)]
+#[require(Transform)]
+pub struct Viewpoint;
+
+/// The places of all viewpoints that count.
+#[derive(bevy::ecs::system::SystemParam)]
+pub(crate) struct Viewpoints<'w, 's> {
+    places: Query<'w, 's, (&'static GlobalTransform, Option<&'static Camera>), With<Viewpoint>>,
+}
+
+impl Viewpoints<'_, '_> {
+    /// Their places in the world; none that is not a number.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = Vec3> + '_ {
+        let counts = |camera: Option<&Camera>| camera.is_none_or(|camera| camera.is_active);
+        let places = self.places.iter().filter(move |(_, camera)| counts(*camera));
+        places.map(|(place, _)| place.translation()).filter(|place| place.is_finite())
+    }
+}
+
+/// Gives every camera a [`Viewpoint`].
+pub(crate) fn plugin(app: &mut App) {
+    app.register_type::<Viewpoint>();
+    // Whoever has done so before did the same.
+    let _ = app.try_register_required_components::<Camera3d, Viewpoint>();
+}
