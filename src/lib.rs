@@ -32,6 +32,7 @@
 //! | [`fire`] | fires that lean with it and give light, [`Fire`](fire::Fire) | sway, wind |
 //! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Terrain`](terrain::Terrain) | texture |
 //! | [`scatter`] | point patterns and forest plans: where plants stand | nobody |
+//! | [`forest`] | forests that grow from plans about the viewers, [`Forest`](forest::Forest) | scatter, terrain, tree |
 
 mod schedule;
 mod setting;
@@ -41,6 +42,7 @@ mod viewpoint;
 
 pub mod dynamics;
 pub mod fire;
+pub mod forest;
 pub mod grass;
 pub mod scatter;
 pub mod sway;
@@ -60,6 +62,7 @@ pub mod prelude {
     pub use crate::{
         Viewpoint, WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
         fire::{Fire, FireLook, FireShape},
+        forest::{Forest, ForestGround, ForestSettings},
         grass::{GrassGround, GrassLook, GrassPatch, GrassResponse, Sward, Tuft},
         sway::{ActiveSway, SwaySettings},
         terrain::{GroundLook, Heightfield, Terrain, TerrainSettings},
@@ -97,5 +100,6 @@ impl PluginGroup for WindwoodMinimalPlugins {
             .add(sway::SwayPlugin)
             .add(grass::GrassPlugin)
             .add(fire::FirePlugin)
+            .add(forest::ForestPlugin)
     }
 }

@@ -8,7 +8,8 @@ pub enum WindwoodSystems {
     /// In `PreUpdate`. The clock moves on, finished wind fields are taken over, every [`WindCell`](crate::wind::WindCell)
     /// gets the wind of its place. Change the [`Wind`](crate::wind::Wind) before it (or in `Update`, for the next frame).
     AdvanceWind,
-    /// In `Update`. Species that were loaded or changed are baked in the background, and trees get their models.
+    /// In `Update`. Species that were loaded or changed are baked in the background, and trees get their models; ground
+    /// about the viewers is built.
     Grow,
     /// In `PostUpdate`, before transforms are propagated. Articulated trees move their beams and leaves.
     Pose,

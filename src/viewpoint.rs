@@ -25,7 +25,7 @@ impl Viewpoints<'_, '_> {
 }
 
 /// Gives every camera a [`Viewpoint`].
-pub(crate) fn plugin(app: &mut App) {
+pub(crate) fn give_cameras_viewpoints(app: &mut App) {
     app.register_type::<Viewpoint>();
     // Whoever has done so before did the same.
     let _ = app.try_register_required_components::<Camera3d, Viewpoint>();

@@ -6,7 +6,7 @@ use std::{
 };
 
 /// A room and the rooms it may import. A room that is not here may not exist.
-const MAY_KNOW: [(&str, &[&str]); 9] = [
+const MAY_KNOW: [(&str, &[&str]); 10] = [
     ("wind", &[]),
     ("dynamics", &[]),
     ("texture", &[]),
@@ -16,11 +16,12 @@ const MAY_KNOW: [(&str, &[&str]); 9] = [
     ("sway", &["tree", "wind", "dynamics", "texture"]),
     ("grass", &["sway"]),
     ("fire", &["sway", "wind"]),
+    ("forest", &["scatter", "terrain", "tree"]),
 ];
 
 /// Files that glue a room to the engine. All others but those of `sway` are pure: they can be read beside the
 /// paper, and know no entities, systems or apps.
-const GLUE: [&str; 25] = [
+const GLUE: [&str; 29] = [
     "wind/cells.rs",
     "wind/clock.rs",
     "wind/current.rs",
@@ -41,6 +42,10 @@ const GLUE: [&str; 25] = [
     "fire/draw.rs",
     "fire/material.rs",
     "fire/mesh.rs",
+    "forest/components.rs",
+    "forest/loader.rs",
+    "forest/plugin.rs",
+    "forest/stream.rs",
     "terrain/components.rs",
     "terrain/material.rs",
     "terrain/plugin.rs",

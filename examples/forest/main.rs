@@ -11,9 +11,12 @@
 mod arguments;
 #[path = "../support/capture.rs"]
 mod capture;
+#[path = "../support/daylight.rs"]
+mod daylight;
 mod flight;
-mod ground;
 mod headless;
+#[path = "../support/landscape.rs"]
+mod landscape;
 mod options;
 mod planting;
 mod scene;
@@ -21,13 +24,13 @@ mod scene;
 use bevy::prelude::*;
 use bevy_windwood::prelude::*;
 use clap::Parser;
-use ground::Ground;
+use landscape::Landscape;
 use options::Options;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let options = Options::parse();
-    let ground = match Ground::load(options.ground.as_deref(), options.cell_size) {
+    let ground = match Landscape::load(options.ground.as_deref(), options.cell_size) {
         Ok(ground) => ground,
         Err(error) => {
             eprintln!("cannot use the ground: {error}");

@@ -1,6 +1,6 @@
 //! Where the trees stand: a wood with a meadow before it, firs uphill and oaks down, in drifts.
 
-use crate::ground::Ground;
+use crate::landscape::Landscape;
 use bevy::prelude::*;
 use bevy_windwood::prelude::*;
 use noise::{NoiseFn, OpenSimplex};
@@ -25,7 +25,7 @@ pub fn half_side_m(trees: u32) -> f32 {
 }
 
 /// Chooses places for `trees` trees; the same seed gives the same wood.
-pub fn places(ground: &Ground, trees: u32, seed: u64) -> Vec<Place> {
+pub fn places(ground: &Landscape, trees: u32, seed: u64) -> Vec<Place> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let drifts = OpenSimplex::new(seed as u32);
     let uphill = ground.uphill();
@@ -46,7 +46,7 @@ pub fn places(ground: &Ground, trees: u32, seed: u64) -> Vec<Place> {
         let is_fir = 0.8 * at.dot(*uphill) / half + 1.6 * drift + random.random_range(-0.25..0.25) > -0.1;
         let scale = if is_fir { random.random_range(0.6..1.15) } else { random.random_range(0.7..1.1) };
         places.push(Place {
-            transform: Transform::from_xyz(at.x, ground.height_m(at.x, at.y) - 0.15, at.y)
+            transform: Transform::from_xyz(at.x, ground.height_m(at.x, at.y), at.y)
                 .with_rotation(Quat::from_rotation_y(random.random_range(0.0..std::f32::consts::TAU)))
                 .with_scale(Vec3::splat(scale)),
             is_fir,

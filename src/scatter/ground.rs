@@ -9,6 +9,16 @@ pub trait Ground {
     fn slope(&self, x_m: f32, z_m: f32) -> f32;
 }
 
+impl<T: Ground + ?Sized> Ground for std::sync::Arc<T> {
+    fn height_m(&self, x_m: f32, z_m: f32) -> f32 {
+        (**self).height_m(x_m, z_m)
+    }
+
+    fn slope(&self, x_m: f32, z_m: f32) -> f32 {
+        (**self).slope(x_m, z_m)
+    }
+}
+
 /// Level ground at a height, m.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LevelGround(pub f32);

@@ -5,7 +5,7 @@ use super::{
     material::GroundMaterial,
     stream::{GroundTexture, begin_terrains, recolour, stream_ground},
 };
-use crate::schedule::WindwoodSystems;
+use crate::{schedule::WindwoodSystems, viewpoint::give_cameras_viewpoints};
 use bevy::{asset::embedded_asset, pbr::MaterialPlugin, prelude::*, render::RenderApp};
 
 /// Draws [`Terrain`](super::Terrain). Without a renderer it does nothing.
@@ -18,7 +18,8 @@ impl Plugin for TerrainDrawPlugin {
         }
         embedded_asset!(app, "shaders/ground.wgsl");
         embedded_asset!(app, "shaders/ground_colour.wgsl");
-        app.add_plugins((MaterialPlugin::<GroundMaterial>::default(), crate::viewpoint::plugin))
+        give_cameras_viewpoints(app);
+        app.add_plugins(MaterialPlugin::<GroundMaterial>::default())
             .register_type::<TerrainSettings>()
             .register_type::<GroundLook>()
             .init_resource::<GroundTexture>()

@@ -107,7 +107,16 @@ impl GroundLimits {
         (self.lowest_m + shift_m..=self.highest_m - shift_m).contains(&height_m)
             && (upright || slope <= self.steepest_deg.to_radians().tan())
     }
+
+    /// The share of chances with which [`admit`](Self::admit) admits ground of this height and slope, 0 to 1.
+    pub(in crate::scatter) fn admitted(&self, height_m: f32, slope: f32) -> f32 {
+        let admits = |step: u8| self.admit(height_m, slope, (f32::from(step) + 0.5) / f32::from(FADE_STEPS));
+        (0..FADE_STEPS).filter(|step| admits(*step)).count() as f32 / f32::from(FADE_STEPS)
+    }
 }
+
+/// Chances that are tried for a share.
+const FADE_STEPS: u8 = 8;
 
 #[cfg(test)]
 mod tests {

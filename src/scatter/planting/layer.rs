@@ -96,6 +96,18 @@ impl Layer {
         f64::from(self.area.least_distance_m)
     }
 
+    /// Plants per hectare to be expected at a place with that ground, before those go that are too near to each other.
+    pub(super) fn density_per_ha(&self, at: DVec2, height_m: f32, slope: f32) -> f32 {
+        let [min, max] = self.region.bounds();
+        if at.cmplt(min).any() || at.cmpgt(max).any() {
+            return 0.0;
+        }
+        let stock_admitted: f32 =
+            self.area.stock.iter().map(|stock| stock.ground.admitted(height_m, slope)).fold(0.0, f32::max);
+        let ground = self.area.ground.admitted(height_m, slope).min(stock_admitted);
+        self.area.density_per_ha * self.region.coverage(at) * ground
+    }
+
     /// Adds what the quadrats hold that reach into `around`, where `free` lets it and the ground is right.
     pub(super) fn sow(
         &self,

@@ -24,6 +24,8 @@ pub struct Planted {
     pub turn_rad: f32,
     /// Its size, relative to a full-grown individual of its species. domain: (0, 4\].
     pub size: f32,
+    /// Its size, relative to the mean of its species and age.
+    pub vigour: f32,
     /// units: years.
     pub age_years: f32,
     /// How far it is ahead of the forest's season. units: days.
@@ -48,6 +50,7 @@ impl Planted {
             position,
             turn_rad: random.random_range(0.0..TAU),
             size: (grown * vigour).clamp(1e-3, GREATEST_SIZE),
+            vigour,
             age_years,
             season_days: stock.season_offset_days + stock.season_spread_days * normal(random),
             tint: stock.tint_spread * random.random_range(-1.0..=1.0),

@@ -102,6 +102,23 @@ impl Planter {
         Some([min, max].map(|corner| self.cell_at(corner.as_vec2())))
     }
 
+    /// Plants per hectare to be expected at a place (x, z), before those go that are too near to each other; 0 where
+    /// nothing may grow.
+    pub fn density_per_ha(&self, at: DVec2, ground: &impl Ground) -> f32 {
+        let mut near = Vec::new();
+        self.blockers_by_place.near(at, at, &mut near);
+        if near.iter().any(|&number| self.blockers[number as usize].covers(at)) {
+            return 0.0;
+        }
+        let place = at.as_vec2();
+        let (height_m, slope) = (ground.height_m(place.x, place.y), ground.slope(place.x, place.y));
+        if !height_m.is_finite() {
+            return 0.0;
+        }
+        self.layers_by_place.near(at, at, &mut near);
+        near.iter().map(|&number| self.layers[number as usize].density_per_ha(at, height_m, slope)).sum()
+    }
+
     /// Fills `planted` with what stands in a cell: the same whatever was planted before. Plants that stand too near to one
     /// of another cell are compared with it, so `ground` is asked about places as far outside the cell as the greatest
     /// least distance.

@@ -1,0 +1,92 @@
+//! The ground of the scenes: a real map, with hills and hummocks that are too small for it.
+
+// Each of the examples uses a part of it.
+#![allow(dead_code)]
+
+use bevy::{math::DVec2, prelude::*};
+use bevy_windwood::terrain::{
+    CovarianceModel, ElevationGrid, ElevationMap, ElevationScale, Heightfield, Interpolation, Layers, MapPlacement,
+    TurningBands, TurningBandsSettings, chunk::drawn_height_m,
+};
+use std::{path::Path, sync::Arc};
+
+/// The shipped elevations: Rocky Mountain National Park, see `assets/terrain/README.md`.
+const SHIPPED: &[u8] = include_bytes!("../../assets/terrain/rmnp-dem-16bit.png");
+/// Its cells, m.
+const SHIPPED_CELL_M: DVec2 = DVec2::new(233.0, 234.0);
+/// Where in the shipped map the world's origin lies, as shares of its width and height: a slope by a valley.
+const SHIPPED_PLACE: DVec2 = DVec2::new(0.675, 0.2366);
+/// Finest cells of the ground as it is drawn, m.
+pub const FINEST_CELL_M: f32 = 2.0;
+
+/// Ground with its origin somewhere in a map.
+#[derive(Clone)]
+pub struct Landscape {
+    pub ground: Arc<dyn Heightfield>,
+    /// Corners of the map: (x, z), m.
+    pub corners_m: [DVec2; 2],
+}
+
+impl Landscape {
+    /// Reads elevations from a 16-bit grey PNG, or takes the shipped ones.
+    pub fn load(file: Option<&Path>, cell_m: f32) -> Result<Self, String> {
+        let (name, bytes) = match file {
+            Some(path) => {
+                let bytes = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+                (path.display().to_string(), bytes)
+            }
+            None => ("the shipped elevations".to_owned(), SHIPPED.to_vec()),
+        };
+        let (cell, place) = match file {
+            Some(_) => (DVec2::splat(f64::from(cell_m)), DVec2::splat(0.5)),
+            None => (SHIPPED_CELL_M, SHIPPED_PLACE),
+        };
+        let scale = ElevationScale { cell_x_m: cell.x, cell_z_m: cell.y, ..default() };
+        let grid = ElevationGrid::from_png(&bytes, &scale).map_err(|error| format!("{name}: {error}"))?;
+        let size_m = cell * (DVec2::new(grid.columns() as f64, grid.rows() as f64) - 1.0);
+        let corner_m = -place * size_m;
+        let placement = MapPlacement { west_m: corner_m.x, north_m: corner_m.y, interpolation: Interpolation::Bicubic };
+        let map = ElevationMap::new(grid, placement).map_err(|error| format!("{name}: {error}"))?;
+        let layers: [Arc<dyn Heightfield>; 3] = [Arc::new(map), hills(0.22 * cell.x)?, hummocks()?];
+        Ok(Self { ground: Arc::new(Layers(layers.into())), corners_m: [corner_m, corner_m + size_m] })
+    }
+
+    /// Height of the drawn ground at a place, m.
+    pub fn height_m(&self, x: f32, z: f32) -> f32 {
+        drawn_height_m(&self.ground, f64::from(FINEST_CELL_M), DVec2::new(f64::from(x), f64::from(z)))
+    }
+
+    /// The horizontal direction in which the ground rises at the origin, as world (x, z).
+    pub fn uphill(&self) -> Dir2 {
+        let rise = |x: f32, z: f32| self.height_m(x, z) - self.height_m(-x, -z);
+        Dir2::new(Vec2::new(rise(25.0, 0.0), rise(0.0, 25.0))).unwrap_or(Dir2::NEG_Y)
+    }
+}
+
+/// Spurs and hollows between the map's samples.
+fn hills(scale_m: f64) -> Result<Arc<dyn Heightfield>, String> {
+    bands(TurningBandsSettings {
+        model: CovarianceModel::Bessel,
+        scale_m,
+        deviation_m: 0.09 * scale_m,
+        finest_wavelength_m: (0.2 * scale_m).max(2.0),
+        seed: 5,
+        ..default()
+    })
+}
+
+/// Hummocks that a walker feels.
+fn hummocks() -> Result<Arc<dyn Heightfield>, String> {
+    bands(TurningBandsSettings {
+        model: CovarianceModel::Bessel,
+        scale_m: 6.0,
+        deviation_m: 0.3,
+        finest_wavelength_m: 4.0,
+        seed: 7,
+        ..default()
+    })
+}
+
+fn bands(settings: TurningBandsSettings) -> Result<Arc<dyn Heightfield>, String> {
+    Ok(Arc::new(TurningBands::new(&settings).map_err(|error| error.to_string())?))
+}

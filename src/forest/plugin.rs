@@ -1,0 +1,25 @@
+//! Registers forests.
+
+use super::{
+    components::{Forest, ForestSettings},
+    loader::ForestLoader,
+    stream::{begin_forests, plant_cells, raise_trees},
+};
+use crate::{scatter::ForestPlan, schedule::WindwoodSystems, tree::TreePlugin, viewpoint::give_cameras_viewpoints};
+use bevy::prelude::*;
+
+/// Forests that grow from plans, with or without drawing. Needs [`TreePlugin`].
+pub struct ForestPlugin;
+
+impl Plugin for ForestPlugin {
+    fn build(&self, app: &mut App) {
+        debug_assert!(app.is_plugin_added::<TreePlugin>(), "forests are made of trees");
+        give_cameras_viewpoints(app);
+        app.init_asset::<ForestPlan>()
+            .init_asset_loader::<ForestLoader>()
+            .register_asset_reflect::<ForestPlan>()
+            .register_type::<Forest>()
+            .register_type::<ForestSettings>()
+            .add_systems(Update, (begin_forests, plant_cells, raise_trees).chain().before(WindwoodSystems::Grow));
+    }
+}
