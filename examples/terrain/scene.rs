@@ -29,7 +29,7 @@ pub struct Setting {
 pub fn camera_transform(setting: &Setting) -> Transform {
     let above = |x: f32, z: f32, height_m: f32| Vec3::new(x, setting.ground.height_m(x, z) + height_m, z);
     let (eye, target) = match setting.options.view {
-        View::Valley => (above(300.0, 560.0, 3.0), above(-60.0, 60.0, 10.0)),
+        View::Valley => (above(300.0, 556.0, 2.2), above(225.0, 450.0, 11.0)),
         View::Summit => (above(2300.0, 21_300.0, 6.0), above(1000.0, 22_900.0, -60.0)),
         View::Aerial => (above(5200.0, 17_500.0, 900.0), above(1180.0, 22_700.0, -500.0)),
     };

@@ -122,13 +122,13 @@ impl Default for GroundLook {
     /// A temperate mountain side in summer.
     fn default() -> Self {
         Self {
-            grass: [0.33, 0.41, 0.19],
-            dry_grass: [0.52, 0.48, 0.29],
-            earth: [0.36, 0.28, 0.20],
-            rock: [0.47, 0.45, 0.43],
+            grass: [0.30, 0.37, 0.19],
+            dry_grass: [0.43, 0.41, 0.28],
+            earth: [0.33, 0.29, 0.23],
+            rock: [0.44, 0.43, 0.42],
             snow: [0.93, 0.95, 0.98],
             litter: [0.29, 0.24, 0.15],
-            canopy: [0.16, 0.23, 0.12],
+            canopy: [0.12, 0.19, 0.11],
             bare_slope_deg: [27.0, 40.0],
             grass_line_m: 1e5,
             snow_line_m: 1e5,

@@ -148,11 +148,17 @@ impl Pyramid {
         Some(key)
     }
 
-    /// Notes that a square has been built; whether it is still wanted.
-    pub fn receive(&mut self, key: ChunkKey) -> bool {
-        let Some(node) = self.nodes.get_mut(&key) else { return false };
-        node.ready = true;
-        true
+    /// Whether a square that has been asked for is still wanted.
+    #[must_use]
+    pub fn wants(&self, key: ChunkKey) -> bool {
+        self.nodes.get(&key).is_some_and(|node| node.asked && !node.ready)
+    }
+
+    /// Notes that a square can be drawn; one that is no longer wanted is left out.
+    pub fn receive(&mut self, key: ChunkKey) {
+        if let Some(node) = self.nodes.get_mut(&key) {
+            node.ready = true;
+        }
     }
 
     /// Whether everything that is wanted is there.

@@ -30,6 +30,8 @@ pub struct TerrainChunks {
     material: Handle<GroundMaterial>,
     building: Vec<(ChunkKey, Task<Built>)>,
     chunks: HashMap<ChunkKey, Entity>,
+    /// Chunks that were spawned in the last frame: only now can they be shown, and coarser ones be hidden.
+    arrived: Vec<ChunkKey>,
     eyes: Vec<Eye>,
     looked_from: Vec<Eye>,
     is_complete: bool,
@@ -99,6 +101,7 @@ pub(super) fn begin_terrains(
             material: material.unwrap_or_else(|| materials.add(ground_material(&look, texture.0.clone()))),
             building: Vec::new(),
             chunks: HashMap::default(),
+            arrived: Vec::new(),
             eyes: Vec::new(),
             looked_from: Vec::new(),
             is_complete: false,
@@ -130,16 +133,20 @@ pub(super) fn stream_ground(
     viewpoints: Viewpoints,
     mut meshes: ResMut<Assets<Mesh>>,
     mut terrains: Query<(Entity, &Terrain, &mut TerrainChunks)>,
-    mut shown: Query<(&TerrainChunk, &mut Visibility, &mut MeshTag)>,
+    mut shown: Query<(&mut Visibility, &mut MeshTag), With<TerrainChunk>>,
 ) {
     for (entity, terrain, mut chunks) in &mut terrains {
         let chunks = &mut *chunks;
         let mut changed = chunks.look(terrain, &viewpoints);
         let forgotten: Vec<Entity> = chunks.pyramid.forgotten().filter_map(|key| chunks.chunks.remove(&key)).collect();
         forgotten.into_iter().for_each(|chunk| commands.entity(chunk).despawn());
-        changed |= chunks.receive(entity, &mut commands, &mut meshes);
+        changed |= !chunks.arrived.is_empty();
+        for key in chunks.arrived.drain(..) {
+            chunks.pyramid.receive(key);
+        }
+        chunks.receive(entity, &mut commands, &mut meshes);
         chunks.build(terrain);
-        chunks.is_complete = chunks.building.is_empty() && chunks.pyramid.is_complete();
+        chunks.is_complete = chunks.building.is_empty() && chunks.arrived.is_empty() && chunks.pyramid.is_complete();
         if changed {
             chunks.pyramid.draw();
             chunks.show(&mut shown);
@@ -168,16 +175,15 @@ impl TerrainChunks {
         true
     }
 
-    /// Takes over chunks that are ready, as many as a frame may; whether there were any.
-    fn receive(&mut self, terrain: Entity, commands: &mut Commands, meshes: &mut Assets<Mesh>) -> bool {
+    /// Takes over chunks that are ready, as many as a frame may.
+    fn receive(&mut self, terrain: Entity, commands: &mut Commands, meshes: &mut Assets<Mesh>) {
         let mut room = self.settings.chunks_per_frame;
-        let before = room;
-        let Self { building, pyramid, chunks, material, settings, .. } = self;
+        let Self { building, pyramid, chunks, arrived, material, settings, .. } = self;
         building.retain_mut(|(key, task)| {
             let built = if room > 0 { block_on(poll_once(task)) } else { None };
             let Some(built) = built else { return true };
             room -= 1;
-            if pyramid.receive(*key) {
+            if pyramid.wants(*key) {
                 let corner = key.corner_m(f64::from(settings.finest_cell_m)).as_vec2();
                 let chunk = commands.spawn((
                     TerrainChunk(*key),
@@ -191,10 +197,10 @@ impl TerrainChunks {
                     NoAutoAabb,
                 ));
                 chunks.insert(*key, chunk.id());
+                arrived.push(*key);
             }
             false
         });
-        room < before
     }
 
     fn build(&mut self, terrain: &Terrain) {
@@ -215,10 +221,10 @@ impl TerrainChunks {
     }
 
     /// Shows the chunks that are drawn, with their seams, and hides all others.
-    fn show(&self, shown: &mut Query<(&TerrainChunk, &mut Visibility, &mut MeshTag)>) {
+    fn show(&self, shown: &mut Query<(&mut Visibility, &mut MeshTag), With<TerrainChunk>>) {
         for (key, entity) in &self.chunks {
-            // One that was spawned in this frame is there from the next on.
-            let Ok((_, mut visibility, mut tag)) = shown.get_mut(*entity) else { continue };
+            // One that was spawned in this frame comes in the next.
+            let Ok((mut visibility, mut tag)) = shown.get_mut(*entity) else { continue };
             let seams = self.pyramid.seams(*key);
             visibility.set_if_neq(if seams.is_some() { Visibility::Inherited } else { Visibility::Hidden });
             if let Some(seams) = seams {

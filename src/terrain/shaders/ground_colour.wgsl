@@ -36,42 +36,47 @@ struct Look {
 
 // Repeats of the texture: no two have a common measure, and they are turned against one another, so that the eye finds no
 // period.
+const TURNED: mat2x2<f32> = mat2x2(0.251, -0.307, 0.307, 0.251);
 const MIDDLE: mat2x2<f32> = mat2x2(0.0642, 0.0437, -0.0437, 0.0642);
 const WIDE: mat2x2<f32> = mat2x2(0.0041, -0.0067, 0.0067, 0.0041);
+const VAST: mat2x2<f32> = mat2x2(0.00083, 0.00031, -0.00031, 0.00083);
 
 // The colour and the light on it that gets lost between blades and clods.
 fn ground_colour(place: vec3<f32>, normal: vec3<f32>, covered: f32, distance: f32) -> vec3<f32> {
     let uv = place.xz * look.per_texture_m;
     let near = textureSample(detail, detail_sampler, uv);
+    let turned = textureSample(detail, detail_sampler, TURNED * uv);
     let middle = textureSample(detail, detail_sampler, MIDDLE * uv);
     let wide = textureSample(detail, detail_sampler, WIDE * uv);
+    let vast = textureSample(detail, detail_sampler, VAST * uv);
     // Seams of rock follow the height, so that cliffs are not smeared.
     let strata = textureSample(detail, detail_sampler, vec2(0.11 * (uv.x + uv.y), 0.31 * place.y * look.per_texture_m));
 
-    // What breaks up every border, -1..1.
-    let ragged = (middle.a - 0.5) + (wide.a - 0.5) + 0.5 * (middle.g - 0.5);
+    // What breaks up every border, some -1..1. From afar only what is large does: the eye would see repeats of the rest.
+    let nearness = 1.0 / (1.0 + distance * distance / 90000.0);
+    let ragged = (vast.a - 0.5) + 0.8 * (wide.a - 0.5) + 0.4 * (vast.r - 0.5) + nearness * ((middle.a - 0.5) + 0.4 * (middle.g - 0.5));
     let slope = 1.0 - normal.y;
     let span = look.bare_to - look.bare_from;
 
     let dryness = smoothstep(-0.5, 0.7, ragged + 0.4 * (wide.r - 0.5))
         + smoothstep(-1.0, 1.0, (place.y - look.grass_line_m) / look.line_blur_m + ragged);
-    let blades = 0.45 + 0.75 * mix(near.r, middle.r, 0.4);
+    let blades = 0.4 + 0.5 * near.r + 0.3 * turned.r * (0.4 + 0.6 * middle.r) + 0.2 * middle.r;
     var colour = mix(look.grass.rgb, look.dry_grass.rgb, saturate(dryness)) * blades;
 
-    let floor = look.litter.rgb * (0.55 + 0.8 * near.g);
+    let floor = look.litter.rgb * (0.45 + 0.5 * near.g + 0.5 * turned.g);
     colour = mix(colour, floor, smoothstep(0.15, 0.75, covered + 0.35 * ragged * covered));
 
-    let clods = 0.6 + 0.8 * mix(near.g, middle.g, 0.5);
+    let clods = 0.5 + 0.45 * turned.g + 0.35 * near.g + 0.2 * middle.g;
     let bare = smoothstep(look.bare_from - 0.25 * span, look.bare_from + 0.5 * span, slope + 0.35 * span * ragged + 0.15 * span * (near.g - 0.5));
     colour = mix(colour, look.earth.rgb * clods, bare);
 
-    let seams = 0.4 + 0.7 * mix(strata.b, middle.b, 0.35) + 0.35 * (near.b - 0.5);
+    let seams = 0.35 + 0.55 * strata.b + 0.3 * turned.b + 0.25 * middle.b;
     let stony = smoothstep(look.bare_to - 0.5 * span, look.bare_to + 0.25 * span, slope + 0.3 * span * ragged + 0.2 * span * (strata.b - 0.5));
     colour = mix(colour, look.rock.rgb * seams, stony);
 
     // Crowns far away: dark between, light on top. They hide what is under them.
-    let crowns = 0.35 + 0.95 * middle.g * (0.6 + 0.8 * wide.r);
-    let closed = smoothstep(0.1, 0.6, covered + 0.3 * ragged * covered) * smoothstep(0.75, 1.15, distance / max(look.canopy_from_m, 1e-3));
+    let crowns = 0.3 + 0.8 * mix(0.5, middle.g, 0.35 + 0.65 * nearness) * (0.6 + 0.4 * turned.g) + 0.3 * (wide.r - 0.5) + 0.25 * (vast.b - 0.5);
+    let closed = smoothstep(0.12, 0.5, covered * (1.0 + 0.6 * ragged)) * smoothstep(0.75, 1.15, distance / max(look.canopy_from_m, 1e-3));
     colour = mix(colour, look.canopy.rgb * crowns, closed);
 
     let steep = smoothstep(look.bare_to - span, look.bare_to + span, slope + 0.2 * span * (strata.b - 0.5));
