@@ -4,7 +4,8 @@
 //! ranks the covariance models by how well they fit it, and draws the map beside ground made from the best.
 //!
 //! `cargo run --example characterise -- points FILE.csv --window 0,0,100,100` counts points in quadrats, ranks the laws
-//! of such counts, and draws the pattern beside one made from the best.
+//! of such counts, and draws the pattern beside one made from the best. The method knows nothing of where the quadrats
+//! lie: clumps that are wider than a quadrat come out smaller, unless `--quadrats` asks for larger ones.
 
 #[path = "../support/arguments.rs"]
 mod arguments;

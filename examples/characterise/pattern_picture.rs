@@ -10,9 +10,9 @@ use image::{Rgb, RgbImage};
 /// Pixels along the longer side of a window.
 const LONGEST_PIXELS: f64 = 720.0;
 /// Radius of a dot over the mean distance of points.
-const DOT: f64 = 0.22;
+const DOT: f64 = 0.16;
 /// Least and greatest radius of a dot, pixels.
-const RADIUS: (f64, f64) = (0.6, 6.0);
+const RADIUS: (f64, f64) = (0.6, 5.0);
 /// What dots may cover of the picture, if none overlapped: with more each is drawn fainter.
 const MOST_COVERED: f64 = 0.7;
 
