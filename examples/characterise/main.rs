@@ -21,17 +21,14 @@ mod terrain;
 mod variogram_chart;
 mod verdict;
 
-use clap::Parser;
+use clap::{Parser, error::ErrorKind};
 use options::{Options, Subject};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let outcome = match Options::try_parse() {
         Ok(options) => characterise(&options.subject),
-        Err(help) if !help.use_stderr() => {
-            print!("{help}");
-            Ok(())
-        }
+        Err(help) if is_help(help.kind()) => help.exit(),
         Err(error) => Err(in_one_line(&error.to_string())),
     };
     match outcome {
@@ -48,6 +45,11 @@ fn characterise(subject: &Subject) -> Result<(), String> {
         Subject::Terrain(options) => terrain::run(options),
         Subject::Points(options) => points::run(options),
     }
+}
+
+fn is_help(kind: ErrorKind) -> bool {
+    use ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};
+    matches!(kind, DisplayHelp | DisplayHelpOnMissingArgumentOrSubcommand | DisplayVersion)
 }
 
 /// What is wrong, without the advice that follows it after a blank line.

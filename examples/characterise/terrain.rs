@@ -18,6 +18,8 @@ use serde_json::{Value, json};
 const MOST_FILE_BYTES: u64 = 64 << 20;
 /// Lines of the random ground: so many leave no streaks in hill shading.
 const LINES: u32 = 64;
+/// Cells in the shortest wave that they can show.
+const WAVE_CELLS: f64 = 2.0;
 /// A fitted scale that is nearer than this to the longest that is tried has no end within the map.
 const ENDLESS: f64 = 0.99;
 
@@ -41,7 +43,7 @@ pub fn run(options: &TerrainOptions) -> Result<(), String> {
     let shown = reduced(&found.map).map_err(named)?;
     let settings = found.settings(shown.cell_m().min_element(), options.seed);
     files::write_json(options.json.as_deref(), &found.to_json(&settings))?;
-    let simulated = simulated(&settings, &shown).map_err(named)?;
+    let simulated = simulated(&settings, &found.map, &shown).map_err(named)?;
     let shading = Shading::of(&shown);
     let panels = [
         Panel { caption: found.describe_map(), picture: shading.draw(&shown) },
@@ -121,7 +123,7 @@ impl Found {
     /// Settings for random ground of the best model, with waves as short as cells of `cell_m` can show.
     fn settings(&self, cell_m: f64, seed: u64) -> TurningBandsSettings {
         let best = self.best();
-        let finest_m = (2.0 * cell_m).min(best.scale_m);
+        let finest_m = (WAVE_CELLS * cell_m).min(best.scale_m);
         let mean_m = self.variogram.drift().mean_m;
         TurningBandsSettings { mean_m, lines: LINES, ..best.settings(finest_m, seed) }
     }
@@ -168,10 +170,19 @@ impl Found {
     }
 }
 
-/// Random ground in the cells of a map.
-fn simulated(settings: &TurningBandsSettings, map: &ElevationGrid) -> Result<ElevationGrid, TerrainError> {
+/// Random ground in the cells of a map, as it is shown.
+fn simulated(
+    settings: &TurningBandsSettings,
+    map: &ElevationGrid,
+    shown: &ElevationGrid,
+) -> Result<ElevationGrid, TerrainError> {
     let ground = TurningBands::new(settings)?;
-    ElevationGrid::sample(&ground, DVec2::ZERO, map.columns() as u32, map.rows() as u32, map.cell_m())
+    let in_cells_of = |map: &ElevationGrid| {
+        ElevationGrid::sample(&ground, DVec2::ZERO, map.columns() as u32, map.rows() as u32, map.cell_m())
+    };
+    let is_rougher_than_shown = settings.finest_wavelength_m < WAVE_CELLS * shown.cell_m().min_element();
+    // Where there are waves that the picture does not show, they are taken away by the same means as from the map.
+    if is_rougher_than_shown { reduced(&in_cells_of(map)?) } else { in_cells_of(shown) }
 }
 
 /// A model's name, with a fractal's dimension.

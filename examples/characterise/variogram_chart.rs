@@ -50,7 +50,7 @@ pub fn draw(area: &Area, variogram: &Variogram, fits: &[Fit]) -> Result<(), Stri
         .label_style(label(&FAINT_INK))
         .axis_desc_style(label(&INK))
         .x_desc("distance, m")
-        .y_desc("semivariance, m²")
+        .y_desc("semivariance, m^2")
         .x_label_formatter(&|&value| axis_number(value))
         .y_label_formatter(&|&value| axis_number(value))
         .draw()

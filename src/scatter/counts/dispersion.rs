@@ -172,7 +172,7 @@ mod tests {
         let [low, high] = range(10.0);
         assert_relative_eq!(low, 0.324_697, epsilon = 1e-6);
         assert_relative_eq!(high, 2.048_318, epsilon = 1e-6);
-        for degrees_of_freedom in [1e4, 1e6, 1.6e7] {
+        for degrees_of_freedom in [1e4, 1e6, 1.6e7_f64] {
             let half = 1.959_964 * (2.0 / degrees_of_freedom).sqrt();
             let [low, high] = range(degrees_of_freedom);
             assert_relative_eq!(1.0 - low, half, max_relative = 0.03);
