@@ -59,7 +59,10 @@ fn number(record: &ByteRecord, column: usize) -> Result<f64, String> {
     let text = String::from_utf8_lossy(field);
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
-        _ => Err(format!("column {name} is `{:.40}`, but must be a finite number", text.escape_debug().to_string())),
+        _ => {
+            let start: String = text.escape_debug().take(40).collect();
+            Err(format!("column {name} is `{start}`, but must be a finite number"))
+        }
     }
 }
 
