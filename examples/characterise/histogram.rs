@@ -11,6 +11,8 @@ use plotters::{
 
 /// Share of the quadrats that may lie beyond the end of the axis.
 const BEYOND: f64 = 1e-4;
+/// Counts on the axis at least, so that there is something to compare with and room for the legend.
+const LEAST_COUNTS: usize = 6;
 /// Half the width of a bar.
 const HALF_BAR: f64 = 0.36;
 /// With more counts than this, dots on the curves would touch.
@@ -22,7 +24,7 @@ const MOST_DOTS: usize = 60;
 /// Where the plotting library refuses.
 pub fn draw(area: &Area, table: &Frequencies, best: &CountLaw) -> Result<(), String> {
     let quadrats = table.quadrats();
-    let counts = shown(table);
+    let counts = shown(table).max(LEAST_COUNTS);
     let random = CountModel::Poisson.with_mean(table.mean()).map_err(refused)?;
     let expected = |law: &CountLaw| -> Vec<(f64, f64)> {
         let probabilities = Probabilities::new(law);
