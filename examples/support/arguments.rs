@@ -3,6 +3,8 @@
 // Each of the examples uses a part of it.
 #![allow(dead_code)]
 
+use std::{fmt::Display, str::FromStr};
+
 /// A wind speed, m/s.
 pub fn wind_speed(text: &str) -> Result<f32, String> {
     in_range(text, 0.0, 75.0, "m/s")
@@ -10,13 +12,13 @@ pub fn wind_speed(text: &str) -> Result<f32, String> {
 
 /// A time, s.
 pub fn seconds(text: &str) -> Result<f64, String> {
-    in_range(text, 0.0, 1e6, "s").map(f64::from)
+    in_range(text, 0.0, 1e6, "s")
 }
 
 /// A number in a range.
-pub fn in_range(text: &str, low: f32, high: f32, unit: &str) -> Result<f32, String> {
-    match text.parse::<f32>() {
-        Ok(value) if (low..=high).contains(&value) => Ok(value),
+pub fn in_range<T: FromStr + PartialOrd + Display>(text: &str, low: T, high: T, unit: &str) -> Result<T, String> {
+    match text.parse::<T>() {
+        Ok(value) if (&low..=&high).contains(&&value) => Ok(value),
         _ => Err(format!("expected a number from {low} to {high} {unit}")),
     }
 }

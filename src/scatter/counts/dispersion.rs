@@ -1,7 +1,8 @@
 //! Tests by chi-square: is a pattern random, and does a law describe it?
 //!
 //! The chi-square distribution is the incomplete gamma function of `puruspe`, which depends on nothing; `statrs` has the
-//! same and far more beside it.
+//! same and far more beside it. Below the mean it is summed here, because `puruspe` 0.4.4 gives NaN there from 200 degrees
+//! of freedom up.
 
 use super::{frequencies::Frequencies, law::CountLaw, probability::Probabilities};
 
@@ -30,6 +31,15 @@ pub fn dispersion(table: &Frequencies) -> Dispersion {
     let chi_square = degrees_of_freedom * index;
     let p_clustered = chi_square_above(chi_square, degrees_of_freedom);
     Dispersion { index, chi_square, degrees_of_freedom, p_clustered, p_regular: 1.0 - p_clustered }
+}
+
+impl Dispersion {
+    /// The indices between which the share `confidence` of all random patterns with as many quadrats lies, the same share
+    /// being beyond either end.
+    pub fn range_if_random(&self, confidence: f64) -> [f64; 2] {
+        let tail = 0.5 * (1.0 - confidence);
+        [1.0 - tail, tail].map(|above| chi_square_quantile(above, self.degrees_of_freedom) / self.degrees_of_freedom)
+    }
 }
 
 /// How well a law describes a pattern.
@@ -82,7 +92,38 @@ fn pooled_classes(law: &CountLaw, table: &Frequencies) -> Vec<(f64, f64)> {
 
 /// Probability that a chi-square variable is above `value`.
 fn chi_square_above(value: f64, degrees_of_freedom: f64) -> f64 {
-    puruspe::gammq(0.5 * degrees_of_freedom, 0.5 * value.max(0.0)).clamp(0.0, 1.0)
+    let (shape, place) = (0.5 * degrees_of_freedom, 0.5 * value.max(0.0));
+    let above = if place < shape + 1.0 { 1.0 - gamma_below(shape, place) } else { puruspe::gammq(shape, place) };
+    above.clamp(0.0, 1.0)
+}
+
+/// Probability that a gamma variable is below `place`, which is less than `shape` + 1: e^-x x^a / Gamma(a) times the sum
+/// of x^n / (a (a+1) ... (a+n)).
+fn gamma_below(shape: f64, place: f64) -> f64 {
+    if place <= 0.0 {
+        return 0.0;
+    }
+    let (mut term, mut sum) = (shape.recip(), shape.recip());
+    // Some multiples of the root of the shape are enough; 2^24 quadrats take 30,000.
+    for step in 1..1_000_000 {
+        term *= place / (shape + f64::from(step));
+        sum += term;
+        if term < sum * f64::EPSILON {
+            break;
+        }
+    }
+    (shape * place.ln() - place - puruspe::ln_gamma(shape)).exp() * sum
+}
+
+/// The value above which a share of all chi-square variables lies, by bisection.
+fn chi_square_quantile(above: f64, degrees_of_freedom: f64) -> f64 {
+    let farthest = degrees_of_freedom + 20.0 * (2.0 * degrees_of_freedom).sqrt() + 100.0;
+    let (mut low, mut high) = (0.0, farthest);
+    for _ in 0..52 {
+        let middle = 0.5 * (low + high);
+        if chi_square_above(middle, degrees_of_freedom) > above { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
 }
 
 #[cfg(test)]
@@ -98,7 +139,7 @@ mod tests {
         assert_relative_eq!(chi_square_above(3.841_458_8, 1.0), 0.05, epsilon = 1e-8);
         assert_relative_eq!(chi_square_above(11.344_866_7, 3.0), 0.01, epsilon = 1e-8);
         // Even degrees: e^-y sum of y^i/i!, i below half of them.
-        for (value, degrees) in [(7.0, 10), (500.0, 460), (1000.0, 1000)] {
+        for (value, degrees) in [(7.0, 10), (500.0, 460), (1000.0, 1000), (380.0, 460), (900.0, 1000), (700.0, 1000)] {
             let y: f64 = 0.5 * value;
             let terms = (1..degrees / 2).scan((-y).exp(), |term, i| {
                 *term *= y / f64::from(i);
@@ -107,8 +148,36 @@ mod tests {
             let expected = (-y).exp() + terms.sum::<f64>();
             assert_relative_eq!(chi_square_above(value, f64::from(degrees)), expected, max_relative = 1e-6);
         }
-        // A million degrees: nearly normal, so half is above the mean.
+        // A million degrees: nearly normal, so half is above the mean, and 84 of 100 above that less a deviation.
         assert_relative_eq!(chi_square_above(1e6, 1e6), 0.5, epsilon = 1e-3);
+        assert_relative_eq!(chi_square_above(1e6 - 2e6_f64.sqrt(), 1e6), 0.841_345, epsilon = 1e-3);
+    }
+
+    #[test]
+    fn no_index_is_without_a_probability() {
+        for degrees_of_freedom in [1.0, 99.0, 199.0, 200.0, 2499.0, 1e6] {
+            let above = |index: u32| chi_square_above(f64::from(index) / 50.0 * degrees_of_freedom, degrees_of_freedom);
+            let all: Vec<f64> = (0..200).map(above).collect();
+            assert!(all.is_sorted_by(|a, b| *b <= a + 1e-7), "{degrees_of_freedom}: {all:?}");
+            assert!(all[0] == 1.0 && all[199] < 0.05, "{degrees_of_freedom}: {all:?}");
+        }
+    }
+
+    #[test]
+    fn random_patterns_have_the_tabled_range_and_that_of_the_normal_law_with_many_quadrats() {
+        let range = |degrees_of_freedom: f64| {
+            let dispersion = Dispersion { degrees_of_freedom, ..dispersion(&real::table(&real::PINES)) };
+            dispersion.range_if_random(0.95)
+        };
+        let [low, high] = range(10.0);
+        assert_relative_eq!(low, 0.324_697, epsilon = 1e-6);
+        assert_relative_eq!(high, 2.048_318, epsilon = 1e-6);
+        for degrees_of_freedom in [1e4, 1e6, 1.6e7_f64] {
+            let half = 1.959_964 * (2.0 / degrees_of_freedom).sqrt();
+            let [low, high] = range(degrees_of_freedom);
+            assert_relative_eq!(1.0 - low, half, max_relative = 0.03);
+            assert_relative_eq!(high - 1.0, half, max_relative = 0.03);
+        }
     }
 
     #[test]

@@ -79,6 +79,18 @@ impl CountKind {
         Self::PoissonNegativeBinomial,
     ];
 
+    /// What the law is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Poisson => "Poisson",
+            Self::Binomial => "binomial",
+            Self::NegativeBinomial => "negative binomial",
+            Self::PoissonPoisson => "Poisson-Poisson",
+            Self::PoissonBinomial => "Poisson-binomial",
+            Self::PoissonNegativeBinomial => "Poisson-negative binomial",
+        }
+    }
+
     /// Number of parameters that an estimate has to find.
     pub fn parameters(self) -> u32 {
         match self {

@@ -49,6 +49,16 @@ impl QuadratGrid {
         Self::new(min_m, max_m, columns as u32, rows as u32)
     }
 
+    /// Quadrats along x.
+    pub fn columns(&self) -> u32 {
+        self.columns
+    }
+
+    /// Quadrats along y.
+    pub fn rows(&self) -> u32 {
+        self.rows
+    }
+
     /// Number of quadrats.
     pub fn quadrats(&self) -> usize {
         self.columns as usize * self.rows as usize
