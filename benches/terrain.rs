@@ -2,11 +2,14 @@
 
 use bevy::math::DVec2;
 use bevy_windwood::terrain::{
-    CovarianceModel, ElevationGrid, Heightfield, TurningBands, TurningBandsSettings, Variogram, VariogramSettings,
+    CovarianceModel, ElevationGrid, Heightfield, Layers, TerrainSettings, TurningBands, TurningBandsSettings,
+    Variogram, VariogramSettings,
+    chunk::{ChunkKey, chunk_vertices},
     fit_model, fit_models,
+    pyramid::{Eye, Pyramid},
 };
 use criterion::{Criterion, criterion_group, criterion_main};
-use std::hint::black_box;
+use std::{hint::black_box, sync::Arc};
 
 /// 16 lines x 100 harmonics.
 fn ground() -> TurningBands {
@@ -51,5 +54,35 @@ fn estimation(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, field, estimation);
+/// A chunk of ground as the examples have it: a map's stand-in and hills, and a look at the pyramid from a new place.
+fn chunks(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("chunk");
+    let hills = TurningBandsSettings { finest_wavelength_m: 10.0, scale_m: 50.0, seed: 2, ..Default::default() };
+    let hills = TurningBands::new(&hills).expect("valid settings");
+    let ground = Layers(vec![Arc::new(ground()), Arc::new(hills)]);
+    let mut column = 0;
+    group.bench_function("build", |bencher| {
+        bencher.iter(|| {
+            column = (column + 1) % 500;
+            chunk_vertices(&ground, None, ChunkKey { level: 1, column, row: 3 }, 2.0)
+        });
+    });
+    let shape = TerrainSettings { reach_m: 40_000.0, ..Default::default() }.shape();
+    let mut pyramid = Pyramid::new(shape);
+    let mut x = 0.0;
+    group.bench_function("look_40_km", |bencher| {
+        bencher.iter(|| {
+            x += 1.0;
+            pyramid.look(&[Eye { place: DVec2::new(x, 0.0), above_ground_m: 2.0 }]);
+            while let Some(key) = pyramid.next_to_build() {
+                pyramid.receive(key);
+            }
+            pyramid.forgotten().for_each(drop);
+            pyramid.drawn().len()
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, field, estimation, chunks);
 criterion_main!(benches);

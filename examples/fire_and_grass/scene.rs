@@ -15,7 +15,9 @@ use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::{f32::consts::TAU, sync::Arc};
 
 /// What pictures of it are called.
-pub const NAME: &str = "fire_and_grass";
+pub fn name(_: &Options) -> &'static str {
+    "fire_and_grass"
+}
 
 /// What the scene is made from.
 #[derive(Resource)]

@@ -1,9 +1,9 @@
-//! Pictures instead of a window, of any scene that has a `NAME`, a camera and a way to tell when it is ready.
+//! Pictures instead of a window, of any scene that has a name, a camera and a way to tell when it is ready.
 
 use crate::{
     capture,
     options::Options,
-    scene::{NAME, Setting, camera_transform, haze, is_ready},
+    scene::{Setting, camera_transform, haze, is_ready, name},
 };
 use bevy::prelude::*;
 use bevy_windwood::prelude::*;
@@ -51,7 +51,7 @@ fn run(app: &mut App, options: &Options) -> Result<(), String> {
         let time_s = options.start + f64::from(frame) * options.interval;
         *app.world_mut().resource_mut::<WindClock>() = WindClock { time_s, previous_s: time_s };
         let picture = capture::capture(app, &target, options.size)?;
-        let path = options.out.join(format!("{NAME}_{frame:03}.png"));
+        let path = options.out.join(format!("{}_{frame:03}.png", name(options)));
         capture::save(&picture, &path)?;
         println!("{} after {:.1} s", path.display(), begun.elapsed().as_secs_f32());
         if options.strip {

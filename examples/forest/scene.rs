@@ -10,7 +10,9 @@ use bevy::{pbr::DistanceFog, prelude::*};
 use bevy_windwood::{prelude::*, terrain::TerrainChunks};
 
 /// What pictures of it are called.
-pub const NAME: &str = "forest";
+pub fn name(_: &Options) -> &'static str {
+    "forest"
+}
 
 /// What the scene is made from.
 #[derive(Resource)]

@@ -14,7 +14,13 @@ use bevy_windwood::{
 };
 
 /// What pictures of it are called.
-pub const NAME: &str = "terrain";
+pub fn name(options: &Options) -> &'static str {
+    match options.view {
+        View::Valley => "terrain_valley",
+        View::Summit => "terrain_summit",
+        View::Aerial => "terrain_aerial",
+    }
+}
 
 const PLAN: &str = "forests/rockies.forest.ron";
 

@@ -178,7 +178,10 @@ fn tree(plant: &Planted, species: &[Handle<Species>]) -> impl Bundle {
         .with_rotation(Quat::from_rotation_y(plant.turn_rad))
         .with_scale(Vec3::splat(plant.vigour));
     let species = species[usize::from(plant.species)].clone();
-    (Tree::new(species).with_age(plant.age_years).with_seed(u64::from(plant.seed)), place)
+    (
+        Tree::new(species).with_age(plant.age_years).with_seed(u64::from(plant.seed)).with_season(plant.season_days),
+        place,
+    )
 }
 
 impl ForestCells {
@@ -188,7 +191,9 @@ impl ForestCells {
         self.eyes.extend(viewpoints.iter().map(Vec3::xz));
         let quarter_m = 0.25 * self.planter.cell_m();
         let rests = |(now, then): (&Vec2, &Vec2)| now.distance(*then) < quarter_m;
-        if self.eyes.len() == self.looked_from.len() && self.eyes.iter().zip(&self.looked_from).all(rests) {
+        // Where nobody looks, what is there stays.
+        let nobody = self.eyes.is_empty();
+        if nobody || self.eyes.len() == self.looked_from.len() && self.eyes.iter().zip(&self.looked_from).all(rests) {
             return;
         }
         self.looked_from.clone_from(&self.eyes);

@@ -64,7 +64,8 @@ pub(super) struct TreeRow {
     pub first_beam: u32,
     pub beam_count: u32,
     pub first_pose: u32,
-    pub padding: u32,
+    /// How far it is ahead of the season, in years.
+    pub season_shift: f32,
 }
 
 /// Size of a `BeamPose` of the shader: three vec4.

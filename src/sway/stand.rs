@@ -4,7 +4,7 @@
 //! tree). Rows are written when a tree comes, moves or goes; nothing here runs for a tree that stands.
 
 use super::rows::{BeamRow, TreeRow};
-use crate::tree::TreeModel;
+use crate::tree::{Tree, TreeModel};
 use bevy::{platform::collections::HashMap, prelude::*};
 
 /// A tree's row in the stand. Taking the component away, or the entity, gives the row back.
@@ -73,13 +73,14 @@ impl Stand {
         Some(Standing { row })
     }
 
-    /// Writes where a tree stands.
-    pub fn place(&mut self, standing: Standing, at: &GlobalTransform) {
+    /// Writes where a tree stands, and how far it is ahead of the season, years.
+    pub fn place(&mut self, standing: Standing, at: &GlobalTransform, season_shift: f32) {
         let (scale, rotation, translation) = at.to_scale_rotation_translation();
         let Some(row) = self.rows.get_mut(standing.row as usize) else { return };
         row.rotation = rotation.to_array();
         row.position = translation.to_array();
         row.scale = scale.y.max(f32::MIN_POSITIVE);
+        row.season_shift = season_shift;
         self.rows_changed = true;
     }
 
@@ -148,13 +149,13 @@ pub(super) fn dismiss_tree(removed: On<Remove, Standing>, trees: Query<&Standing
     }
 }
 
-/// Writes the places of trees that are new or have moved.
+/// Writes the places of trees that are new, were changed or have moved.
 pub(super) fn place_trees(
     mut stand: ResMut<Stand>,
-    trees: Query<(&Standing, &GlobalTransform), Or<(Changed<GlobalTransform>, Added<Standing>)>>,
+    trees: Query<(&Standing, &Tree, &GlobalTransform), Or<(Changed<GlobalTransform>, Changed<Tree>, Added<Standing>)>>,
 ) {
-    for (standing, at) in &trees {
-        stand.place(*standing, at);
+    for (standing, tree, at) in &trees {
+        stand.place(*standing, at, tree.season_shift());
     }
 }
 

@@ -72,8 +72,9 @@ impl TerrainSettings {
         require("chunks_per_frame", self.chunks_per_frame, 1..=64)
     }
 
-    /// The pyramid that reaches so far: its coarsest squares are as wide as the reach, so that there are some ten.
-    pub(super) fn shape(&self) -> PyramidShape {
+    /// The pyramid that reaches so far: its coarsest squares are about as wide as the reach, so that there are some ten.
+    #[must_use]
+    pub fn shape(&self) -> PyramidShape {
         let finest_side_m = self.finest_cell_m * super::chunk::CHUNK_CELLS as f32;
         PyramidShape {
             finest_cell_m: f64::from(self.finest_cell_m),

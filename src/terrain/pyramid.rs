@@ -140,7 +140,7 @@ impl Pyramid {
     }
 
     /// The next square to build: the coarsest, and the nearest of these.
-    pub fn next(&mut self) -> Option<ChunkKey> {
+    pub fn next_to_build(&mut self) -> Option<ChunkKey> {
         let key = self.queue.pop()?;
         if let Some(node) = self.nodes.get_mut(&key) {
             node.asked = true;

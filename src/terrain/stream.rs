@@ -167,7 +167,9 @@ impl TerrainChunks {
         let rests = |(now, then): (&Eye, &Eye)| {
             now.place.distance(then.place).max((now.above_ground_m - then.above_ground_m).abs()) < half_a_cell
         };
-        if self.eyes.len() == self.looked_from.len() && self.eyes.iter().zip(&self.looked_from).all(rests) {
+        // Where nobody looks, what is there stays.
+        let nobody = self.eyes.is_empty();
+        if nobody || self.eyes.len() == self.looked_from.len() && self.eyes.iter().zip(&self.looked_from).all(rests) {
             return false;
         }
         self.looked_from.clone_from(&self.eyes);
@@ -205,7 +207,7 @@ impl TerrainChunks {
 
     fn build(&mut self, terrain: &Terrain) {
         while self.building.len() < self.settings.builds_at_once as usize {
-            let Some(key) = self.pyramid.next() else { break };
+            let Some(key) = self.pyramid.next_to_build() else { break };
             let (terrain, cell_m) = (terrain.clone(), f64::from(self.settings.finest_cell_m));
             let task = AsyncComputeTaskPool::get().spawn(async move {
                 let vertices = chunk_vertices(&terrain.ground, terrain.cover.as_deref(), key, cell_m);

@@ -18,12 +18,15 @@ pub struct Tree {
     /// Age, years; `None` is the species' mature age. Clamped to what the species allows; not every year has a model of
     /// its own, so a tree that ages as time goes by grows in steps.
     pub age_years: Option<f32>,
+    /// How far it is ahead of the [`Season`](crate::tree::Season), or behind it (below 0): trees of one kind do not all turn
+    /// on one day. units: days, clamped to half a year; what is not a number is 0.
+    pub season_days: f32,
 }
 
 impl Tree {
     /// A tree whose variant follows from its place.
     pub fn new(species: Handle<Species>) -> Self {
-        Self { species, seed: None, age_years: None }
+        Self { species, seed: None, age_years: None, season_days: 0.0 }
     }
 
     /// Sets the seed that chooses the variant.
@@ -36,6 +39,19 @@ impl Tree {
     pub fn with_age(mut self, years: f32) -> Self {
         self.age_years = Some(years);
         self
+    }
+
+    /// Sets how far it is ahead of the season, days.
+    pub fn with_season(mut self, days: f32) -> Self {
+        self.season_days = days;
+        self
+    }
+
+    /// How far it is ahead of the season, in years.
+    #[cfg(feature = "render")]
+    pub(crate) fn season_shift(&self) -> f32 {
+        let days = if self.season_days.is_nan() { 0.0 } else { self.season_days };
+        days.clamp(-182.5, 182.5) / 365.0
     }
 
     /// The seed in force at `place`: a well-mixed number, the same on every run.

@@ -38,7 +38,8 @@ struct TreeRow {
     beam_count: u32,
     // First of its poses; one a beam, and one more that holds the wind at the tree.
     first_pose: u32,
-    padding: u32,
+    // How far it is ahead of the season, in years.
+    season_shift: f32,
 }
 
 // How a beam is bent, and the rigid motion that its ancestors give to its rest frame.

@@ -100,7 +100,7 @@ fn vertex(in: Vertex) -> VertexOutput {
     let tag = mesh_functions::get_tag(in.instance_index);
     let tree = tree_of(tag);
 #ifdef WINDWOOD_LEAVES
-    let state = season::leaves(frame.year, lag_of(in, tag), in.sway.z);
+    let state = season::leaves(fract(frame.year + tree.season_shift), lag_of(in, tag), in.sway.z);
     let now = swayed(in, tree, frame.poses_now, frame.leaf_time.x, state);
 #else
     let now = swayed(in, tree, frame.poses_now, frame.leaf_time.x);

@@ -12,7 +12,7 @@ fn eye(x: f64, z: f64, above_ground_m: f64) -> Eye {
 }
 
 fn build_all(pyramid: &mut Pyramid) {
-    while let Some(key) = pyramid.next() {
+    while let Some(key) = pyramid.next_to_build() {
         pyramid.receive(key);
     }
     pyramid.draw();
@@ -42,7 +42,7 @@ fn the_ground_is_covered_once_however_the_viewer_jumps_about() {
         pyramid.look(&[Eye { place, above_ground_m: random.random_range(0.0..300.0) }]);
         // Only a part of what is wanted is ready in time.
         for _ in 0..random.random_range(0..40) {
-            let Some(key) = pyramid.next() else { break };
+            let Some(key) = pyramid.next_to_build() else { break };
             pyramid.receive(key);
         }
         pyramid.draw();
@@ -109,7 +109,7 @@ fn no_seam_is_open() {
             let at = 400.0 * DVec2::new(random.random_range(-1.0..1.0), random.random_range(-1.0..1.0));
             pyramid.look(&[Eye { place: at, above_ground_m: 2.0 }]);
             for _ in 0..random.random_range(5..120) {
-                let Some(key) = pyramid.next() else { break };
+                let Some(key) = pyramid.next_to_build() else { break };
                 pyramid.receive(key);
             }
             pyramid.draw();

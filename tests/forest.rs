@@ -1,0 +1,191 @@
+//! Forests as a game sees them: trees that come and go with the viewers, without rendering.
+
+use bevy::{math::DVec2, prelude::*};
+use bevy_windwood::{
+    forest::{ForestCell, ForestCells},
+    prelude::*,
+    scatter::{ForestPlan, Planter, plan::Area, plan::GroundLimits, plan::Shape},
+    terrain::{Heightfield, chunk::drawn_height_m},
+};
+use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
+use std::collections::BTreeSet;
+
+/// Hills that no triangle follows exactly.
+struct Hills;
+
+impl Heightfield for Hills {
+    fn height_m(&self, place: DVec2) -> f64 {
+        12.0 * (place.x / 31.0).sin() * (place.y / 17.0).cos()
+    }
+
+    fn gradient(&self, place: DVec2) -> DVec2 {
+        let (x, z) = (place.x / 31.0, place.y / 17.0);
+        12.0 * DVec2::new(x.cos() * z.cos() / 31.0, -x.sin() * z.sin() / 17.0)
+    }
+}
+
+const TREES_TO_M: f32 = 90.0;
+const TREES_PER_FRAME: u32 = 40;
+
+fn plan() -> ForestPlan {
+    let shape = Shape::Rectangle { min_m: [-2000.0; 2], max_m: [2000.0; 2] };
+    let ground = GroundLimits { steepest_deg: 30.0, ..default() };
+    ForestPlan { cell_m: 32.0, areas: vec![Area { shape, ground, ..default() }], ..default() }
+}
+
+/// An app with a forest on hills, and one who looks at it from the origin. Its species need not exist.
+fn forest_app() -> (App, Entity) {
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default(), WindwoodMinimalPlugins));
+    app.finish();
+    app.cleanup();
+    let plan = app.world_mut().resource_mut::<Assets<ForestPlan>>().add(plan());
+    let settings = ForestSettings { trees_to_m: TREES_TO_M, trees_per_frame: TREES_PER_FRAME, ..default() };
+    app.world_mut().spawn(Terrain::new(Hills));
+    app.world_mut().spawn((Forest::new(plan), settings));
+    let viewer = app.world_mut().spawn(Viewpoint).id();
+    (app, viewer)
+}
+
+fn look_from(app: &mut App, viewer: Entity, place: Vec2) {
+    *app.world_mut().get_mut::<Transform>(viewer).unwrap() = Transform::from_xyz(place.x, 2.0, place.y);
+    // The place is told to all in one update, and the forest looks about in the next.
+    app.update();
+    for _ in 0..4000 {
+        app.update();
+        let world = app.world_mut();
+        if world.query::<&ForestCells>().iter(world).all(ForestCells::is_complete) {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    panic!("the forest did not come about");
+}
+
+/// Bits of every tree's place, turn and size.
+fn trees(app: &mut App) -> BTreeSet<[u32; 6]> {
+    let world = app.world_mut();
+    let bits = |at: &Transform| {
+        let ([x, y, z], turn) = (at.translation.to_array(), at.rotation);
+        [x, y, z, turn.y, turn.w, at.scale.x].map(f32::to_bits)
+    };
+    let trees: Vec<_> = world.query_filtered::<&Transform, With<Tree>>().iter(world).map(bits).collect();
+    let set: BTreeSet<_> = trees.iter().copied().collect();
+    assert_eq!(set.len(), trees.len(), "no tree stands twice");
+    set
+}
+
+fn places(app: &mut App) -> Vec<Vec3> {
+    let world = app.world_mut();
+    world.query_filtered::<&Transform, With<Tree>>().iter(world).map(|at| at.translation).collect()
+}
+
+#[test]
+fn every_tree_that_the_plan_has_near_the_viewer_stands_on_the_drawn_ground() {
+    let (mut app, viewer) = forest_app();
+    look_from(&mut app, viewer, Vec2::new(13.0, -40.0));
+    let (ground, cell_m) = (Hills, f64::from(TerrainSettings::default().finest_cell_m));
+    let standing = places(&mut app);
+    assert!(standing.len() > 100, "{} trees", standing.len());
+    for at in &standing {
+        let drawn = drawn_height_m(&ground, cell_m, DVec2::new(f64::from(at.x), f64::from(at.z)));
+        assert!((at.y - drawn).abs() < 0.01, "a tree at {at}, where the ground is drawn at {drawn}");
+    }
+    // Independently of cells: the whole plan, planted on the same ground.
+    let planter = Planter::new(&plan()).unwrap();
+    let own = bevy_windwood::forest::StandingGround::new(std::sync::Arc::new(Hills), cell_m as f32);
+    let (mut planted, mut missing) = (Vec::new(), 0);
+    for cell in (-8..8).flat_map(|row| (-8..8).map(move |column| IVec2::new(column, row))) {
+        planter.plant(cell, &own, &mut planted);
+        let near = planted.iter().filter(|plant| plant.position.xz().distance(Vec2::new(13.0, -40.0)) < TREES_TO_M);
+        missing += near.filter(|plant| !standing.contains(&plant.position)).count();
+    }
+    assert_eq!(missing, 0);
+}
+
+#[test]
+fn the_same_trees_stand_whatever_way_the_viewer_came() {
+    let (mut app, viewer) = forest_app();
+    look_from(&mut app, viewer, Vec2::ZERO);
+    let first = trees(&mut app);
+    look_from(&mut app, viewer, Vec2::new(700.0, 300.0));
+    let far = trees(&mut app);
+    assert!(first.is_disjoint(&far));
+    look_from(&mut app, viewer, Vec2::ZERO);
+    assert_eq!(trees(&mut app), first);
+
+    let (mut other, viewer) = forest_app();
+    look_from(&mut other, viewer, Vec2::new(900.0, -900.0));
+    look_from(&mut other, viewer, Vec2::new(700.0, 300.0));
+    assert_eq!(trees(&mut other), far);
+}
+
+#[test]
+fn no_frame_brings_more_trees_than_it_may() {
+    let (mut app, viewer) = forest_app();
+    look_from(&mut app, viewer, Vec2::ZERO);
+    *app.world_mut().get_mut::<Transform>(viewer).unwrap() = Transform::from_xyz(500.0, 0.0, 0.0);
+    let (mut before, mut most) = (trees(&mut app), 0);
+    for _ in 0..200 {
+        app.update();
+        let now = trees(&mut app);
+        most = most.max(now.difference(&before).count());
+        before = now;
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    assert!(most > 0 && most <= TREES_PER_FRAME as usize, "{most} trees in a frame");
+}
+
+fn living(app: &mut App) -> usize {
+    let world = app.world_mut();
+    world.query::<Entity>().iter(world).count()
+}
+
+#[test]
+fn a_long_flight_leaves_no_more_behind_than_a_short_one() {
+    let (mut app, viewer) = forest_app();
+    look_from(&mut app, viewer, Vec2::ZERO);
+    let begun = living(&mut app);
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(6);
+    for _ in 0..150 {
+        let place = Vec2::new(random.random_range(-2500.0..2500.0), random.random_range(-2500.0..2500.0));
+        *app.world_mut().get_mut::<Transform>(viewer).unwrap() = Transform::from_xyz(place.x, 0.0, place.y);
+        (0..random.random_range(1..6)).for_each(|_| app.update());
+    }
+    look_from(&mut app, viewer, Vec2::ZERO);
+    assert_eq!(living(&mut app), begun);
+    let world = app.world_mut();
+    assert!(world.query::<&ForestCell>().iter(world).count() < 100);
+}
+
+#[test]
+fn a_plan_that_cannot_be_planted_leaves_the_last_good_forest() {
+    let (mut app, viewer) = forest_app();
+    look_from(&mut app, viewer, Vec2::ZERO);
+    let good = trees(&mut app);
+    let change = |app: &mut App, density_per_ha: f32| {
+        let mut plans = app.world_mut().resource_mut::<Assets<ForestPlan>>();
+        let id = plans.ids().next().unwrap();
+        plans.get_mut(id).unwrap().areas[0].density_per_ha = density_per_ha;
+    };
+    for bad in [f32::NAN, 1e10, -3.0] {
+        change(&mut app, bad);
+        (0..5).for_each(|_| app.update());
+        assert_eq!(trees(&mut app), good);
+    }
+    change(&mut app, 40.0);
+    (0..3).for_each(|_| app.update());
+    look_from(&mut app, viewer, Vec2::ZERO);
+    let thin = trees(&mut app);
+    assert!(!thin.is_empty() && thin.len() < good.len() / 2, "{} of {}", thin.len(), good.len());
+}
+
+#[test]
+fn a_viewer_who_is_nowhere_is_no_viewer() {
+    let (mut app, viewer) = forest_app();
+    look_from(&mut app, viewer, Vec2::ZERO);
+    let good = trees(&mut app);
+    *app.world_mut().get_mut::<Transform>(viewer).unwrap() = Transform::from_xyz(f32::NAN, 0.0, f32::INFINITY);
+    (0..10).for_each(|_| app.update());
+    assert_eq!(trees(&mut app), good);
+}
