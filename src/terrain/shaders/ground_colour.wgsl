@@ -54,13 +54,13 @@ fn ground_colour(place: vec3<f32>, normal: vec3<f32>, covered: f32, distance: f3
 
     // What breaks up every border, some -1..1. From afar only what is large does: the eye would see repeats of the rest.
     let nearness = 1.0 / (1.0 + distance * distance / 90000.0);
-    let ragged = (vast.a - 0.5) + 0.8 * (wide.a - 0.5) + 0.4 * (vast.r - 0.5) + nearness * ((middle.a - 0.5) + 0.4 * (middle.g - 0.5));
+    let ragged = (vast.a - 0.5) + 0.8 * (wide.a - 0.5) + 0.4 * (vast.b - 0.5) + nearness * ((middle.a - 0.5) + 0.3 * (middle.b - 0.5));
     let slope = 1.0 - normal.y;
     let span = look.bare_to - look.bare_from;
 
     let dryness = smoothstep(-0.5, 0.7, ragged + 0.4 * (wide.r - 0.5))
         + smoothstep(-1.0, 1.0, (place.y - look.grass_line_m) / look.line_blur_m + ragged);
-    let blades = 0.4 + 0.5 * near.r + 0.3 * turned.r * (0.4 + 0.6 * middle.r) + 0.2 * middle.r;
+    let blades = 0.25 + 0.65 * near.r + 0.4 * turned.r * (0.4 + 0.6 * middle.a) + 0.2 * middle.r;
     var colour = mix(look.grass.rgb, look.dry_grass.rgb, saturate(dryness)) * blades;
 
     let floor = look.litter.rgb * (0.45 + 0.5 * near.g + 0.5 * turned.g);
