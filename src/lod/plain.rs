@@ -106,3 +106,57 @@ impl PlainVertices {
         self.fan(first);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        lod::CylinderSettings,
+        tree::{Species, painting::paint},
+    };
+
+    fn planted(text: &str) -> (PlainVertices, CylinderLevel) {
+        let species = Species::from_ron(text).unwrap();
+        let model = TreeModel::bake(&species, species.age.mature_years, 1);
+        let scene = Scene::new(&species, &model, &paint(&species));
+        let settings = CylinderSettings { width_texels: 32, height_texels: 32, ..CylinderSettings::default() };
+        let crown = CylinderLevel::bake(&scene, &species, &model, &settings).unwrap();
+        (plain(&scene, &model, Some(&crown)), crown)
+    }
+
+    fn area_m2(plain: &PlainVertices, triangles: std::ops::Range<usize>) -> f32 {
+        let corner = |index: u32| Vec3::from_array(plain.positions[index as usize]);
+        plain.indices[3 * triangles.start..3 * triangles.end]
+            .chunks_exact(3)
+            .map(|triple| {
+                0.5 * (corner(triple[1]) - corner(triple[0])).cross(corner(triple[2]) - corner(triple[0])).length()
+            })
+            .sum()
+    }
+
+    #[test]
+    fn a_fir_has_triangles_and_an_oak_has_ellipses() {
+        let (fir, _) = planted(include_str!("../../assets/species/fir.species.ron"));
+        assert_eq!(fir.indices.len(), 3 * (4 + 2));
+        let (oak, _) = planted(include_str!("../../assets/species/oak.species.ron"));
+        assert_eq!(oak.indices.len(), 3 * (4 + 2 * (ELLIPSE_CORNERS as usize - 2)));
+        let green = |colour: &[f32; 3]| colour[1] > colour[0] && colour[1] > colour[2];
+        assert_eq!(oak.colours.iter().filter(|colour| green(colour)).count(), 2 * ELLIPSE_CORNERS as usize);
+    }
+
+    #[test]
+    fn each_polygon_of_a_crown_covers_what_the_crown_does() {
+        for text in
+            [include_str!("../../assets/species/fir.species.ron"), include_str!("../../assets/species/oak.species.ron")]
+        {
+            let (plain, crown) = planted(text);
+            let each = (plain.indices.len() / 3 - 4) / 2;
+            let opaque = 1.0 - (1.0 - crown.cover).powi(2);
+            let expected_m2 = opaque * crown.profile.silhouette_m2();
+            for half in 0..2 {
+                let found_m2 = area_m2(&plain, 4 + half * each..4 + (half + 1) * each);
+                assert!((found_m2 / expected_m2 - 1.0).abs() < 1e-3, "{found_m2} for {expected_m2}");
+            }
+        }
+    }
+}

@@ -5,6 +5,7 @@
 //! done in a fifth of the time.
 
 use bevy::math::{Vec2, Vec3};
+use std::ops::Range;
 
 use super::{
     film::{Film, Sample},
@@ -56,12 +57,12 @@ impl<'a> Projection<'a> {
     /// Finds the rays that a triangle stops.
     fn cover(&mut self, triangle: usize, forward: Vec3) {
         let [a, b, c] = self.scene.triangles[triangle].map(|corner| self.corners[corner as usize]);
-        let low = a.min(b).min(c).truncate();
-        let high = a.max(b).max(c).truncate();
-        // Rays run through the middle of their cells.
-        let first = (low - 0.5).ceil().max(Vec2::ZERO);
-        let last = (high - 0.5).floor().min(Vec2::splat(self.rays as f32 - 1.0));
-        if first.cmpgt(last).any() {
+        let low = a.min(b).min(c);
+        let high = a.max(b).max(c);
+        // Rays run through the middle of their cells: from the first that is not before `low` to the last before `high`.
+        let cells = |low: f32, high: f32| (low + 0.5) as usize..((high + 0.5) as usize).min(self.rays);
+        let (columns, rows) = (cells(low.x, high.x), cells(low.y, high.y));
+        if columns.is_empty() || rows.is_empty() {
             return;
         }
         let (ab, ac) = ((b - a).truncate(), (c - a).truncate());
@@ -71,20 +72,19 @@ impl<'a> Projection<'a> {
             return;
         }
         let (u_step, v_step) = (Vec2::new(ac.y, -ac.x) / area, Vec2::new(-ab.y, ab.x) / area);
-        let (first_x, last_x) = (first.x as usize, last.x as usize);
-        for y in first.y as usize..=last.y as usize {
-            let from = Vec2::new(first.x + 0.5, y as f32 + 0.5) - a.truncate();
-            let (mut u, mut v) = (from.dot(u_step), from.dot(v_step));
-            for x in first_x..=last_x {
-                if u >= 0.0 && v >= 0.0 && u + v <= 1.0 {
-                    let depth = a.z + u * (b.z - a.z) + v * (c.z - a.z);
-                    let seen = &mut self.nearest[y * self.rays + x];
-                    if depth < seen.depth && self.scene.stops(triangle, [u, v], forward, Sight::Tree) {
-                        *seen = Seen { depth, triangle: triangle as u32, at: [u, v] };
-                    }
+        let gate = self.scene.gate(triangle, Sight::Tree);
+        let sides = [u_step.x, v_step.x, -u_step.x - v_step.x];
+        let (to_b, to_c) = (b.z - a.z, c.z - a.z);
+        for y in rows {
+            let from = Vec2::new(0.5, y as f32 + 0.5) - a.truncate();
+            let (u, v) = (from.dot(u_step), from.dot(v_step));
+            for x in within([u, v, 1.0 - u - v], sides, &columns) {
+                let at = [u + u_step.x * x as f32, v + v_step.x * x as f32];
+                let depth = a.z + at[0] * to_b + at[1] * to_c;
+                let seen = &mut self.nearest[y * self.rays + x];
+                if depth < seen.depth && gate.stops(at, forward) {
+                    *seen = Seen { depth, triangle: triangle as u32, at };
                 }
-                u += u_step.x;
-                v += v_step.x;
             }
         }
     }
@@ -108,4 +108,25 @@ impl<'a> Projection<'a> {
             }
         }
     }
+}
+
+/// Those of the numbers x for which none of the three `start + step x` is negative.
+fn within(start: [f32; 3], step: [f32; 3], numbers: &Range<usize>) -> Range<usize> {
+    let (mut low, mut high) = (numbers.start as f32, numbers.end as f32 - 1.0);
+    for (start, step) in start.into_iter().zip(step) {
+        let root = -start / step;
+        if step > 0.0 {
+            low = low.max(root);
+        } else if step < 0.0 {
+            high = high.min(root);
+        } else if start < 0.0 {
+            return 0..0;
+        }
+    }
+    if low > high {
+        return 0..0;
+    }
+    // Both are positive: a cast rounds down, and is faster than a call.
+    let first = low as usize;
+    first + usize::from(first as f32 != low)..high as usize + 1
 }

@@ -57,6 +57,8 @@ pub struct Scene {
     pub(super) corners: Vec<Corner>,
     /// Of the wood first, then of the leaves.
     pub(super) triangles: Vec<[u32; 3]>,
+    /// For each triangle its first corner, and the ways from there to the second and the third, m.
+    facets: Vec<[Vec3; 3]>,
     wood_triangles: usize,
     /// For each triangle of the wood, whether it belongs to a stem.
     of_stem: Vec<bool>,
@@ -89,7 +91,12 @@ impl Scene {
         let beams = &model.skeleton.beams;
         let is_stem = |corner: &u32| beams[model.wood.sway[*corner as usize][0] as usize].order == 0;
         let of_stem = triangles[..wood_triangles].iter().map(|triple| triple.iter().all(is_stem)).collect();
+        let facet = |triple: &[u32; 3]| {
+            let [a, b, c] = triple.map(|corner| corners[corner as usize].position);
+            [a, b - a, c - a]
+        };
         Self {
+            facets: triangles.iter().map(facet).collect(),
             boxes: boxes(&corners, &triangles),
             corners,
             triangles,
@@ -131,8 +138,7 @@ impl Scene {
     /// Where a ray meets the plane of a triangle inside it: the distance, m, and the shares of its second and third
     /// corner (Möller & Trumbore 1997).
     pub(super) fn meet(&self, triangle: usize, from: Vec3, direction: Vec3) -> Option<(f32, [f32; 2])> {
-        let [a, b, c] = self.triangles[triangle].map(|corner| self.corners[corner as usize].position);
-        let (ab, ac) = (b - a, c - a);
+        let [a, ab, ac] = self.facets[triangle];
         let across = direction.cross(ac);
         let volume = ab.dot(across);
         // Bark has no inside.
@@ -146,18 +152,19 @@ impl Scene {
         (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| (ac.dot(along) / volume, [u, v]))
     }
 
-    /// Whether a triangle stops a ray at a place, and does not let it through a gap between leaves.
-    pub(super) fn stops(&self, triangle: usize, at: [f32; 2], direction: Vec3, sight: Sight) -> bool {
+    /// What decides whether a triangle stops rays, or lets them through a gap between leaves.
+    pub(super) fn gate(&self, triangle: usize, sight: Sight) -> Gate<'_> {
         if !self.is_leaf(triangle) {
-            return sight == Sight::Tree || !self.of_stem[triangle];
+            return if sight == Sight::Tree || !self.of_stem[triangle] { Gate::Shut } else { Gate::Open };
         }
         let corners = self.corners_of(triangle);
-        let alpha = self.foliage.clamped(blend(corners.map(|corner| corner.uv), at)).alpha;
-        if !self.is_billow || alpha <= MASK_CUT_OFF {
-            return alpha > MASK_CUT_OFF;
-        }
-        let normal = mixed(corners.map(|corner| corner.normal), at).normalize_or_zero();
-        alpha * silhouette_alpha(normal.dot(direction)) > MASK_CUT_OFF
+        let uvs = corners.map(|corner| corner.uv);
+        let normals = self.is_billow.then(|| corners.map(|corner| corner.normal));
+        Gate::Leaf { mask: &self.foliage, uvs, normals }
+    }
+
+    pub(super) fn stops(&self, triangle: usize, at: [f32; 2], direction: Vec3, sight: Sight) -> bool {
+        self.gate(triangle, sight).stops(at, direction)
     }
 
     /// What is seen of a triangle at a place.
@@ -165,13 +172,14 @@ impl Scene {
         let corners = self.corners_of(triangle);
         let uv = blend(corners.map(|corner| corner.uv), at);
         let is_leaf = self.is_leaf(triangle);
-        let texel = if is_leaf { self.foliage.clamped(uv) } else { self.bark.repeated(uv) };
+        let paint = if is_leaf { &self.foliage } else { &self.bark };
+        let texel = if is_leaf { paint.clamped(uv) } else { paint.repeated(uv) };
         let shade = blend(corners.map(|corner| corner.shade), at);
         Hit {
             distance_m,
-            colour: std::array::from_fn(|channel| (texel.colour[channel] * shade[channel]).min(1.0)),
+            colour: std::array::from_fn(|channel| (paint.colour[texel][channel] * shade[channel]).min(1.0)),
             normal: mixed(corners.map(|corner| corner.normal), at).try_normalize().unwrap_or(Vec3::Y),
-            translucency: if is_leaf { texel.translucency } else { 0.0 },
+            translucency: if is_leaf { paint.translucency[texel] } else { 0.0 },
             is_leaf,
         }
     }
@@ -191,6 +199,26 @@ impl Scene {
 
     fn corners_of(&self, triangle: usize) -> [&Corner; 3] {
         self.triangles[triangle].map(|corner| &self.corners[corner as usize])
+    }
+}
+
+/// How a triangle stops rays.
+pub(super) enum Gate<'a> {
+    /// It does not.
+    Open,
+    /// Wherever they meet it.
+    Shut,
+    /// Where its mask is; with normals, where it is so beyond the outline of a billow.
+    Leaf { mask: &'a Paint, uvs: [[f32; 2]; 3], normals: Option<[Vec3; 3]> },
+}
+
+impl Gate<'_> {
+    /// Whether a ray along a unit vector is stopped at a place.
+    pub(super) fn stops(&self, at: [f32; 2], direction: Vec3) -> bool {
+        let Self::Leaf { mask, uvs, normals } = self else { return matches!(self, Self::Shut) };
+        let alpha = mask.alpha[mask.clamped(blend(*uvs, at))];
+        let outline = |normals: [Vec3; 3]| silhouette_alpha(mixed(normals, at).normalize_or_zero().dot(direction));
+        alpha > MASK_CUT_OFF && normals.is_none_or(|normals| alpha * outline(normals) > MASK_CUT_OFF)
     }
 }
 
@@ -250,17 +278,12 @@ fn mixed([a, b, c]: [Vec3; 3], [u, v]: [f32; 2]) -> Vec3 {
 }
 
 /// One mip of a texture, as light.
-struct Paint {
+pub(super) struct Paint {
     width: usize,
     height: usize,
-    texels: Vec<PaintTexel>,
-}
-
-#[derive(Clone, Copy)]
-struct PaintTexel {
-    colour: [f32; 3],
-    alpha: f32,
-    translucency: f32,
+    colour: Vec<[f32; 3]>,
+    alpha: Vec<f32>,
+    translucency: Vec<f32>,
 }
 
 impl Paint {
@@ -268,30 +291,34 @@ impl Paint {
     fn new(colours: &TextureData, normals: Option<&TextureData>, mip: usize) -> Self {
         let mip = mip.min(colours.mips.len() - 1);
         let share = |byte: u8| f32::from(byte) / 255.0;
-        let veil = normals.and_then(|normals| normals.mips.get(mip));
-        let texel = |(index, bytes): (usize, &[u8])| PaintTexel {
-            colour: linear([bytes[0], bytes[1], bytes[2]].map(share)),
-            alpha: share(bytes[3]),
-            translucency: veil.and_then(|veil| veil.get(4 * index + 3)).map_or(1.0, |&byte| share(byte)),
-        };
+        let texels = || colours.mips[mip].chunks_exact(4);
+        let veil =
+            normals.and_then(|normals| normals.mips.get(mip)).filter(|veil| veil.len() == colours.mips[mip].len());
         Self {
             width: (colours.width as usize >> mip).max(1),
             height: (colours.height as usize >> mip).max(1),
-            texels: colours.mips[mip].chunks_exact(4).enumerate().map(texel).collect(),
+            colour: texels().map(|bytes| linear([bytes[0], bytes[1], bytes[2]].map(share))).collect(),
+            alpha: texels().map(|bytes| share(bytes[3])).collect(),
+            translucency: match veil {
+                Some(veil) => veil.chunks_exact(4).map(|bytes| share(bytes[3])).collect(),
+                None => texels().map(|_| 1.0).collect(),
+            },
         }
     }
 
-    fn clamped(&self, [u, v]: [f32; 2]) -> &PaintTexel {
+    /// Index of the texel at a place; beyond the rim, of that on the rim.
+    fn clamped(&self, [u, v]: [f32; 2]) -> usize {
         let place = |share: f32, size: usize| ((share * size as f32) as usize).min(size - 1);
-        &self.texels[place(v, self.height) * self.width + place(u, self.width)]
+        place(v, self.height) * self.width + place(u, self.width)
     }
 
-    fn repeated(&self, uv: [f32; 2]) -> &PaintTexel {
+    /// Index of the texel at a place of a texture that repeats.
+    fn repeated(&self, uv: [f32; 2]) -> usize {
         self.clamped(uv.map(|share| share - share.floor()))
     }
 
     fn mean(&self) -> [f32; 3] {
-        let sum = |channel: usize| self.texels.iter().map(|texel| texel.colour[channel]).sum::<f32>();
-        std::array::from_fn(|channel| sum(channel) / self.texels.len() as f32)
+        let sum = |channel: usize| self.colour.iter().map(|colour| colour[channel]).sum::<f32>();
+        std::array::from_fn(|channel| sum(channel) / self.colour.len() as f32)
     }
 }

@@ -69,8 +69,8 @@ impl Default for LevelSettings {
     fn default() -> Self {
         Self {
             reductions: vec![
-                Reduction { least_radius_m: 0.012, leaf_share: 0.5 },
-                Reduction { least_radius_m: 0.03, leaf_share: 0.2 },
+                Reduction { least_radius_m: 0.02, leaf_share: 0.5 },
+                Reduction { least_radius_m: 0.05, leaf_share: 0.2 },
             ],
             cylinder: CylinderSettings::default(),
             views: ViewSettings::default(),

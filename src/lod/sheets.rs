@@ -26,16 +26,27 @@ fn sheets() {
         let species = Species::from_ron(&std::fs::read_to_string(file).unwrap()).unwrap();
         let model = TreeModel::bake(&species, species.age.mature_years, 1);
         let textures = paint(&species);
-        let time = std::time::Instant::now();
+        let cpu = || {
+            std::time::Duration::from_nanos(
+                std::fs::read_to_string("/proc/thread-self/schedstat")
+                    .unwrap()
+                    .split(' ')
+                    .next()
+                    .unwrap()
+                    .parse()
+                    .unwrap(),
+            )
+        };
+        let start = cpu();
         let scene = Scene::new(&species, &model, &textures);
-        let t0 = time.elapsed();
+        let t0 = cpu() - start;
         let c = CylinderLevel::bake(&scene, &species, &model, &CylinderSettings::default());
-        let t1 = time.elapsed();
+        let t1 = cpu() - start;
         let v = ViewAtlas::bake(&scene, &ViewSettings::default());
-        let t2 = time.elapsed();
+        let t2 = cpu() - start;
         let r = simplify::reduce(&model, &LevelSettings::default().reductions[0]);
         let r1 = simplify::reduce(&model, &LevelSettings::default().reductions[1]);
-        let t3 = time.elapsed();
+        let t3 = cpu() - start;
         println!(
             "{name}: wood {} leaves {} scene {t0:?} cylinder {:?} views {:?} reduce {:?}",
             model.wood.indices.len() / 3,
@@ -51,6 +62,32 @@ fn sheets() {
             r.leaves.indices.len() / 3,
             r1.leaves.indices.len() / 3
         );
+        let t4 = cpu();
+        let mut n = 0;
+        for view in [[0u32, 3], [2, 2], [5, 1], [3, 4]] {
+            let basis = ViewBasis::of_view(view.into(), 8);
+            let half = v.frame.half_m(&basis);
+            for y in 0..128 {
+                for x in 0..128 {
+                    let (px, py) = ((x as f32 + 0.5) / 64.0 - 1.0, (y as f32 + 0.5) / 64.0 - 1.0);
+                    let from = v.frame.centre + basis.right * (px * half.x)
+                        - basis.up * (py * half.y)
+                        - basis.forward * half.z;
+                    n += scene.cast(from, basis.forward, 2.0 * half.z, scene::Sight::Tree).is_some() as usize;
+                }
+            }
+        }
+        println!("  4 views by rays: {:?} hits {n}; {} faces", cpu() - t4, v.colour.mips.len());
+        let t5 = cpu();
+        let mut pr = projection::Projection::new(&scene, 128);
+        for _ in 0..16 {
+            for view in [[0u32, 3], [2, 2], [5, 1], [3, 4]] {
+                let basis = ViewBasis::of_view(view.into(), 8);
+                pr.look(&basis, v.frame.centre, v.frame.half_m(&basis));
+            }
+        }
+        let t6 = cpu();
+        println!("  64 looks {:?}", t6 - t5);
         save(&v.colour, 0, 0, &format!("{name}_views"));
         save(&v.colour, 2, 0, &format!("{name}_views_mip2"));
         save(&v.colour, 0, 1, &format!("{name}_views_rgb"));

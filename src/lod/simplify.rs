@@ -196,7 +196,7 @@ mod tests {
     fn what_a_coarser_tree_has_a_finer_one_has_too() {
         let model = oak();
         let levels =
-            [(0.005, 0.7), (0.02, 0.4), (0.05, 0.1), (1.0, 0.02)].map(|(radius, share)| reduced(&model, radius, share));
+            [(0.02, 0.7), (0.04, 0.4), (0.08, 0.1), (1.0, 0.02)].map(|(radius, share)| reduced(&model, radius, share));
         for pair in levels.windows(2) {
             let (finer, coarser) = (&pair[0], &pair[1]);
             let has = |meshes: &ReducedMeshes, position: &[f32; 3]| meshes.wood.positions.contains(position);
@@ -214,7 +214,9 @@ mod tests {
             let fewer = fewer_leaves(&leaves, share);
             assert!((area_m2(&fewer) / area_m2(&leaves) - 1.0).abs() < 1e-4);
             let left = fewer.indices.len() as f32 / leaves.indices.len() as f32;
-            assert!((left - share).abs() < 0.005, "{left} for {share}");
+            // The golden ratio is never off by two of its places, of some hundred.
+            let places = leaves.indices.len() as f32 / 6.0;
+            assert!((left - share).abs() < 2.0 / places, "{left} for {share}");
             assert!(fewer.indices.iter().all(|&index| (index as usize) < fewer.positions.len()));
         }
     }
