@@ -193,7 +193,7 @@ impl Film {
         let mut sorted: Vec<f32> = places.iter().map(|&place| alphas[place]).collect();
         let (_, &mut faintest, _) = sorted.select_nth_unstable_by(last, |a, b| b.total_cmp(a));
         let passing = MASK_CUT_OFF + HALF_A_STEP;
-        let faintest = faintest.clamp(1e-3, passing.max(0.999));
+        let faintest = faintest.clamp(1e-3, 0.999);
         for &place in places {
             let alpha = alphas[place];
             alphas[place] = if alpha < faintest {

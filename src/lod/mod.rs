@@ -17,19 +17,18 @@
 mod chart;
 pub mod cylinder;
 mod film;
+mod paint;
 pub mod plain;
 pub mod profile;
 mod projection;
 pub mod scene;
 pub mod settings;
 pub mod simplify;
+mod stem;
 pub mod views;
 
 #[cfg(test)]
 mod tests;
-
-#[cfg(test)]
-mod sheets;
 
 pub use chart::{ViewWeight, normal_of, place_of_normal, view_direction, view_place, views_towards};
 pub use cylinder::{CylinderLevel, EnvelopeVertices};

@@ -2,7 +2,7 @@
 //!
 //! Rays of one parallel projection differ only in where they start. So each triangle is asked which rays it stops, not
 //! each ray which triangles it meets; what is seen is the same (a test holds it equal to [`Scene::cast`]), and an atlas is
-//! done in a fifth of the time.
+//! done in a sixth of the time.
 
 use bevy::math::{Vec2, Vec3};
 use std::ops::Range;
