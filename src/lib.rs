@@ -28,6 +28,7 @@
 //! | [`texture`] | the canvas with its mips, Fourier textures | nobody |
 //! | [`tree`] | species, growth, meshes, [`Tree`](tree::Tree), [`Season`](tree::Season) | dynamics, texture |
 //! | [`sway`] | trees in the wind, on the processor and in shaders | tree, wind, dynamics, texture |
+//! | [`lod`] | lower levels of detail of a baked tree: reduced meshes, envelopes, views | tree, texture, dynamics |
 //! | [`grass`] | meadows that bend in the wind, [`GrassPatch`](grass::GrassPatch) | sway |
 //! | [`fire`] | fires that lean with it and give light, [`Fire`](fire::Fire) | sway, wind |
 //! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Terrain`](terrain::Terrain) | texture |
@@ -44,6 +45,7 @@ pub mod dynamics;
 pub mod fire;
 pub mod forest;
 pub mod grass;
+pub mod lod;
 pub mod scatter;
 pub mod sway;
 pub mod terrain;

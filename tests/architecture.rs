@@ -13,6 +13,7 @@ const MAY_KNOW: [(&str, &[&str]); 10] = [
     ("terrain", &["texture"]),
     ("scatter", &[]),
     ("tree", &["dynamics", "texture"]),
+    ("lod", &["tree", "texture", "dynamics"]),
     ("sway", &["tree", "wind", "dynamics", "texture"]),
     ("grass", &["sway"]),
     ("fire", &["sway", "wind"]),

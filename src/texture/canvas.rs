@@ -23,7 +23,7 @@ pub struct TextureData {
 pub const MASK_CUT_OFF: f32 = 0.5;
 
 /// A little more than half a step of an 8-bit channel: what keeps a value above the cut-off when it is rounded.
-const HALF_A_STEP: f32 = 0.6 / 255.0;
+pub(crate) const HALF_A_STEP: f32 = 0.6 / 255.0;
 
 /// An image in linear floats, before it is a texture.
 #[derive(Clone, Debug)]
@@ -128,7 +128,7 @@ impl Canvas {
     }
 }
 
-fn colour_bytes(texel: &[f32; 4]) -> [u8; 4] {
+pub(crate) fn colour_bytes(texel: &[f32; 4]) -> [u8; 4] {
     [srgb_byte(texel[0]), srgb_byte(texel[1]), srgb_byte(texel[2]), byte(texel[3])]
 }
 
@@ -138,7 +138,7 @@ fn normal_bytes(texel: &[f32; 4]) -> [u8; 4] {
     [channel(texel[0]), channel(texel[1]), channel(texel[2]), byte(texel[3])]
 }
 
-fn linear_bytes(texel: &[f32; 4]) -> [u8; 4] {
+pub(crate) fn linear_bytes(texel: &[f32; 4]) -> [u8; 4] {
     texel.map(byte)
 }
 

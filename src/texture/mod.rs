@@ -4,5 +4,5 @@
 pub mod canvas;
 pub mod fourier;
 
-pub(crate) use canvas::{Canvas, linear, mix};
+pub(crate) use canvas::{Canvas, HALF_A_STEP, colour_bytes, linear, linear_bytes, mix};
 pub use canvas::{MASK_CUT_OFF, TextureData};

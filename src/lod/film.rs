@@ -1,0 +1,217 @@
+//! What rays saw, gathered in texels, and made textures with mips.
+//!
+//! A texel keeps sums over its rays. Half the size is the mean of those sums, so that what is clear lends no colour; where
+//! nothing was hit at all, colour comes from the coarser mips, so that no dark rim shows when textures are filtered.
+
+use bevy::math::Vec3;
+
+use super::chart::place_of_normal;
+use crate::texture::{HALF_A_STEP, MASK_CUT_OFF, TextureData, colour_bytes, linear_bytes};
+
+/// How much a texel's coverage is mixed with that of the next coarser mip. The few rays of a texel make few steps of
+/// coverage; this makes steps between them, and the outline a little smoother.
+const SOFTNESS: f32 = 0.25;
+
+/// What one ray saw.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sample {
+    pub colour: [f32; 3],
+    pub normal: Vec3,
+    pub translucency: f32,
+    pub depth: f32,
+}
+
+/// Means over the rays of a texel, those that saw nothing counting as nought.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Texel {
+    colour: Vec3,
+    normal: Vec3,
+    depth: f32,
+    translucency: f32,
+    /// Share of rays that hit something.
+    pub cover: f32,
+}
+
+impl Texel {
+    /// Takes in a ray that is `share` of the texel.
+    pub(super) fn add(&mut self, sample: &Sample, share: f32) {
+        self.colour += Vec3::from_array(sample.colour) * share;
+        self.normal += sample.normal * share;
+        self.depth += sample.depth * share;
+        self.translucency += sample.translucency * share;
+        self.cover += share;
+    }
+
+    fn mean(texels: [&Self; 4]) -> Self {
+        let mean = |value: fn(&Self) -> f32| 0.25 * texels.iter().map(|texel| value(texel)).sum::<f32>();
+        let mean_vector = |value: fn(&Self) -> Vec3| 0.25 * texels.iter().map(|texel| value(texel)).sum::<Vec3>();
+        Self {
+            colour: mean_vector(|texel| texel.colour),
+            normal: mean_vector(|texel| texel.normal),
+            depth: mean(|texel| texel.depth),
+            translucency: mean(|texel| texel.translucency),
+            cover: mean(|texel| texel.cover),
+        }
+    }
+}
+
+/// What a covered texel shows; `alpha` apart.
+#[derive(Clone, Copy)]
+struct Shown {
+    colour: Vec3,
+    normal: Vec3,
+    depth: f32,
+    translucency: f32,
+}
+
+/// Of a texel of whose surroundings nothing is known.
+const UNSEEN: Shown = Shown { colour: Vec3::ZERO, normal: Vec3::Y, depth: 0.5, translucency: 0.0 };
+
+impl Texel {
+    fn shown(&self, around: Shown) -> Shown {
+        if self.cover <= 0.0 {
+            return around;
+        }
+        Shown {
+            colour: self.colour / self.cover,
+            normal: self.normal.try_normalize().unwrap_or(around.normal),
+            depth: self.depth / self.cover,
+            translucency: self.translucency / self.cover,
+        }
+    }
+}
+
+/// Texels in rows from the top.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Film {
+    pub width: usize,
+    pub height: usize,
+    pub texels: Vec<Texel>,
+}
+
+/// The two textures that a film becomes.
+pub(super) struct Developed {
+    /// sRGB colour and coverage.
+    pub colour: TextureData,
+    /// Linear: place of the normal in red and green, depth in blue, translucency in alpha.
+    pub surface: TextureData,
+}
+
+impl Film {
+    pub(super) fn new(width: usize, height: usize) -> Self {
+        Self { width, height, texels: vec![Texel::default(); width * height] }
+    }
+
+    /// Share of all rays that hit something.
+    pub(super) fn cover(&self) -> f32 {
+        self.texels.iter().map(|texel| texel.cover).sum::<f32>() / self.texels.len() as f32
+    }
+
+    /// Mean colour of what was hit, linear.
+    pub(super) fn colour(&self) -> [f32; 3] {
+        let (colour, cover) = self
+            .texels
+            .iter()
+            .fold((Vec3::ZERO, 0.0), |(colour, cover), texel| (colour + texel.colour, cover + texel.cover));
+        (colour / cover.max(1e-6)).to_array()
+    }
+
+    fn halved(&self) -> Self {
+        let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
+        let at = |x: usize, y: usize| &self.texels[y.min(self.height - 1) * self.width + x.min(self.width - 1)];
+        let texel = |index: usize| {
+            let (x, y) = (2 * (index % width), 2 * (index / width));
+            Texel::mean([at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)])
+        };
+        Self { width, height, texels: (0..width * height).map(texel).collect() }
+    }
+
+    /// Makes textures of a film of tiles of `tile_width` x `tile_height` texels, powers of two, with mips until a tile's
+    /// shorter side is `least` texels. No mip mixes tiles. Of each tile in each mip as many texels pass the mask's cut-off
+    /// as rays hit the tree.
+    pub(super) fn developed(self, tile_width: usize, tile_height: usize, least: usize) -> Developed {
+        let (width, height) = (self.width as u32, self.height as u32);
+        let shorter = tile_width.min(tile_height);
+        let mut pyramid = vec![self];
+        for mip in 1..=shorter.ilog2() as usize {
+            let half = pyramid[mip - 1].halved();
+            pyramid.push(half);
+        }
+        let mips = (shorter / least.clamp(1, shorter)).ilog2() as usize + 1;
+        let mut colours = vec![Vec::new(); mips];
+        let mut surfaces = vec![Vec::new(); mips];
+        // From the coarsest, which lends colours to the finer ones.
+        let mut around: Option<(usize, Vec<Shown>)> = None;
+        for mip in (0..pyramid.len()).rev() {
+            let film = &pyramid[mip];
+            let shown = film.shown(around.as_ref());
+            if mip < mips {
+                let alphas = film.alphas(pyramid.get(mip + 1), [tile_width >> mip, tile_height >> mip]);
+                colours[mip] = shown.iter().zip(&alphas).flat_map(|(texel, &alpha)| texel.colour(alpha)).collect();
+                surfaces[mip] = shown.iter().flat_map(Shown::surface).collect();
+            }
+            around = Some((film.width, shown));
+        }
+        Developed {
+            colour: TextureData { width, height, mips: colours, srgb: true },
+            surface: TextureData { width, height, mips: surfaces, srgb: false },
+        }
+    }
+
+    fn shown(&self, around: Option<&(usize, Vec<Shown>)>) -> Vec<Shown> {
+        let lent = |index: usize| {
+            around.map_or(UNSEEN, |(width, coarser)| coarser[index / self.width / 2 * width + index % self.width / 2])
+        };
+        self.texels.iter().enumerate().map(|(index, texel)| texel.shown(lent(index))).collect()
+    }
+
+    /// Alpha of all texels.
+    fn alphas(&self, coarser: Option<&Self>, tile: [usize; 2]) -> Vec<f32> {
+        let soft = |(index, texel): (usize, &Texel)| {
+            let around = coarser.map_or(texel.cover, |coarser| {
+                coarser.texels[index / self.width / 2 * coarser.width + index % self.width / 2].cover
+            });
+            texel.cover + SOFTNESS * (around - texel.cover)
+        };
+        let mut alphas: Vec<f32> = self.texels.iter().enumerate().map(soft).collect();
+        for top in (0..self.height).step_by(tile[1]) {
+            for left in (0..self.width).step_by(tile[0]) {
+                let rows = top..top + tile[1];
+                let places: Vec<usize> =
+                    rows.flat_map(|y| y * self.width + left..y * self.width + left + tile[0]).collect();
+                self.cut(&places, &mut alphas);
+            }
+        }
+        alphas
+    }
+
+    /// Bends the alphas of a tile so that as many pass the cut-off as rays hit the tree: the faintest of them lands just
+    /// above it, nought and one stay where they are.
+    fn cut(&self, places: &[usize], alphas: &mut [f32]) {
+        let cover: f32 = places.iter().map(|&place| self.texels[place].cover).sum();
+        let Some(last) = (cover.round() as usize).checked_sub(1) else { return };
+        let mut sorted: Vec<f32> = places.iter().map(|&place| alphas[place]).collect();
+        let (_, &mut faintest, _) = sorted.select_nth_unstable_by(last, |a, b| b.total_cmp(a));
+        let passing = MASK_CUT_OFF + HALF_A_STEP;
+        let faintest = faintest.clamp(1e-3, 0.999);
+        for &place in places {
+            let alpha = alphas[place];
+            alphas[place] = if alpha < faintest {
+                alpha / faintest * (MASK_CUT_OFF - HALF_A_STEP)
+            } else {
+                passing + (1.0 - passing) * ((alpha - faintest) / (1.0 - faintest)).min(1.0)
+            };
+        }
+    }
+}
+
+impl Shown {
+    fn colour(&self, alpha: f32) -> [u8; 4] {
+        colour_bytes(&self.colour.extend(alpha).to_array())
+    }
+
+    fn surface(&self) -> [u8; 4] {
+        let place = place_of_normal(self.normal);
+        linear_bytes(&[place.x, place.y, self.depth, self.translucency])
+    }
+}

@@ -1,0 +1,132 @@
+//! Many parallel rays at once.
+//!
+//! Rays of one parallel projection differ only in where they start. So each triangle is asked which rays it stops, not
+//! each ray which triangles it meets; what is seen is the same (a test holds it equal to [`Scene::cast`]), and an atlas is
+//! done in a sixth of the time.
+
+use bevy::math::{Vec2, Vec3};
+use std::ops::Range;
+
+use super::{
+    film::{Film, Sample},
+    scene::{Scene, Sight},
+    views::ViewBasis,
+};
+
+/// A square field of parallel rays on a tree.
+pub(super) struct Projection<'a> {
+    scene: &'a Scene,
+    /// Rays each way.
+    rays: usize,
+    /// Corners of the tree: place on the field, in rays, and depth, 0 to 1.
+    corners: Vec<Vec3>,
+    nearest: Vec<Seen>,
+}
+
+/// The first triangle on a ray's way.
+#[derive(Clone, Copy)]
+struct Seen {
+    depth: f32,
+    triangle: u32,
+    at: [f32; 2],
+}
+
+const NOTHING: Seen = Seen { depth: f32::INFINITY, triangle: u32::MAX, at: [0.0; 2] };
+
+impl<'a> Projection<'a> {
+    pub(super) fn new(scene: &'a Scene, rays: usize) -> Self {
+        Self { scene, rays, corners: vec![Vec3::ZERO; scene.corners.len()], nearest: vec![NOTHING; rays * rays] }
+    }
+
+    /// Looks at the tree along `basis.forward`, at a box about `centre` whose half sides, m, lie along the basis.
+    pub(super) fn look(&mut self, basis: &ViewBasis, centre: Vec3, half_m: Vec3) {
+        let rays = self.rays as f32;
+        let (right, down) = (basis.right * (0.5 * rays / half_m.x), basis.up * (-0.5 * rays / half_m.y));
+        let forward = basis.forward * (0.5 / half_m.z);
+        let middle = Vec3::new(0.5 * rays, 0.5 * rays, 0.5);
+        for (projected, corner) in self.corners.iter_mut().zip(&self.scene.corners) {
+            let from = corner.position - centre;
+            *projected = Vec3::new(from.dot(right), from.dot(down), from.dot(forward)) + middle;
+        }
+        self.nearest.fill(NOTHING);
+        for triangle in 0..self.scene.triangles.len() {
+            self.cover(triangle, basis.forward);
+        }
+    }
+
+    /// Finds the rays that a triangle stops.
+    fn cover(&mut self, triangle: usize, forward: Vec3) {
+        let [a, b, c] = self.scene.triangles[triangle].map(|corner| self.corners[corner as usize]);
+        let low = a.min(b).min(c);
+        let high = a.max(b).max(c);
+        // Rays run through the middle of their cells: from the first that is not before `low` to the last before `high`.
+        let cells = |low: f32, high: f32| (low + 0.5) as usize..((high + 0.5) as usize).min(self.rays);
+        let (columns, rows) = (cells(low.x, high.x), cells(low.y, high.y));
+        if columns.is_empty() || rows.is_empty() {
+            return;
+        }
+        let (ab, ac) = ((b - a).truncate(), (c - a).truncate());
+        let area = ab.perp_dot(ac);
+        // Downwards counts as up here, so that what faces the eye turns the other way.
+        if area == 0.0 || (area > 0.0 && !self.scene.is_leaf(triangle)) {
+            return;
+        }
+        let (u_step, v_step) = (Vec2::new(ac.y, -ac.x) / area, Vec2::new(-ab.y, ab.x) / area);
+        let gate = self.scene.gate(triangle, Sight::Tree);
+        let sides = [u_step.x, v_step.x, -u_step.x - v_step.x];
+        let (to_b, to_c) = (b.z - a.z, c.z - a.z);
+        for y in rows {
+            let from = Vec2::new(0.5, y as f32 + 0.5) - a.truncate();
+            let (u, v) = (from.dot(u_step), from.dot(v_step));
+            for x in within([u, v, 1.0 - u - v], sides, &columns) {
+                let at = [u + u_step.x * x as f32, v + v_step.x * x as f32];
+                let depth = a.z + at[0] * to_b + at[1] * to_c;
+                let seen = &mut self.nearest[y * self.rays + x];
+                if depth < seen.depth && gate.stops(at, forward) {
+                    *seen = Seen { depth, triangle: triangle as u32, at };
+                }
+            }
+        }
+    }
+
+    /// What the ray of a column and row saw.
+    pub(super) fn sample(&self, x: usize, y: usize) -> Option<Sample> {
+        let seen = self.nearest[y * self.rays + x];
+        (seen.depth < f32::INFINITY)
+            .then(|| self.scene.hit(seen.triangle as usize, seen.at, 0.0).sample(seen.depth.clamp(0.0, 1.0)))
+    }
+
+    /// Records all rays on a square of a film, `per_texel` x `per_texel` to a texel.
+    pub(super) fn expose(&self, film: &mut Film, left: usize, top: usize, per_texel: usize) {
+        let share = 1.0 / (per_texel * per_texel) as f32;
+        for y in 0..self.rays {
+            let row = (top + y / per_texel) * film.width + left;
+            for x in 0..self.rays {
+                if let Some(sample) = self.sample(x, y) {
+                    film.texels[row + x / per_texel].add(&sample, share);
+                }
+            }
+        }
+    }
+}
+
+/// Those of the numbers x for which none of the three `start + step x` is negative.
+fn within(start: [f32; 3], step: [f32; 3], numbers: &Range<usize>) -> Range<usize> {
+    let (mut low, mut high) = (numbers.start as f32, numbers.end as f32 - 1.0);
+    for (start, step) in start.into_iter().zip(step) {
+        let root = -start / step;
+        if step > 0.0 {
+            low = low.max(root);
+        } else if step < 0.0 {
+            high = high.min(root);
+        } else if start < 0.0 {
+            return 0..0;
+        }
+    }
+    if low > high {
+        return 0..0;
+    }
+    // Both are positive: a cast rounds down, and is faster than a call.
+    let first = low as usize;
+    first + usize::from(first as f32 != low)..high as usize + 1
+}
