@@ -32,10 +32,12 @@
 //! | [`fire`] | fires that lean with it and give light, [`Fire`](fire::Fire) | sway, wind |
 //! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Heightfield`](terrain::Heightfield) | nobody |
 //! | [`scatter`] | point patterns and forest plans: where plants stand | nobody |
+//! | [`cells`] | the forest's voxel grid: what is seen, at which level, what to plant, who stands where; no ECS | scatter |
 
 mod schedule;
 mod setting;
 
+pub mod cells;
 pub mod dynamics;
 pub mod fire;
 pub mod grass;

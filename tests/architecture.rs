@@ -6,12 +6,13 @@ use std::{
 };
 
 /// A room and the rooms it may import. A room that is not here may not exist.
-const MAY_KNOW: [(&str, &[&str]); 9] = [
+const MAY_KNOW: [(&str, &[&str]); 10] = [
     ("wind", &[]),
     ("dynamics", &[]),
     ("texture", &[]),
     ("terrain", &[]),
     ("scatter", &[]),
+    ("cells", &["scatter"]),
     ("tree", &["dynamics", "texture"]),
     ("sway", &["tree", "wind", "dynamics", "texture"]),
     ("grass", &["sway"]),
