@@ -18,14 +18,14 @@ mod block;
 mod bounds;
 mod cell;
 mod level;
-//mod query;
+mod query;
 mod store;
-//mod stream;
+mod stream;
 mod view;
 
 pub use cell::Cell;
 pub use level::{CellLevels, Lens, Level, LevelDistances, LevelSwitches};
-//pub use query::{Found, RayHit, Trunk};
+pub use query::{Found, RayHit, Trunk};
 pub use store::CellStore;
-//pub use stream::{CellStream, Orders, StreamSettings, Viewpoint};
+pub use stream::{CellStream, Orders, StreamSettings, Viewpoint};
 pub use view::{Seen, Sun, TreeExtent, View};

@@ -28,6 +28,8 @@ fn key_of(block: IVec2) -> Key {
 pub struct CellStore {
     cell_m: f32,
     blocks: BTreeMap<Key, Block>,
+    /// The least and the greatest block.
+    bounds: Option<[IVec2; 2]>,
     cells: usize,
     plants: usize,
     heap_bytes: usize,
@@ -40,7 +42,7 @@ impl CellStore {
     /// Where `cell_m` is outside its domain.
     pub fn new(cell_m: f32) -> Result<Self, SettingError> {
         require("cell_m", cell_m, 8.0..=1024.0)?;
-        Ok(Self { cell_m, blocks: BTreeMap::new(), cells: 0, plants: 0, heap_bytes: 0 })
+        Ok(Self { cell_m, blocks: BTreeMap::new(), bounds: None, cells: 0, plants: 0, heap_bytes: 0 })
     }
 
     /// Side of a cell, m.
@@ -62,7 +64,9 @@ impl CellStore {
     pub fn insert(&mut self, cell: IVec2, content: Cell) -> Option<Cell> {
         self.plants += content.len();
         self.heap_bytes += content.heap_bytes();
-        let before = self.blocks.entry(key_of(block_of(cell))).or_insert_with(Block::new).insert(cell, content);
+        let block = block_of(cell);
+        let before = self.blocks.entry(key_of(block)).or_insert_with(Block::new).insert(cell, content);
+        self.bounds = Some(self.bounds.map_or([block; 2], |[min, max]| [min.min(block), max.max(block)]));
         self.cells += usize::from(before.is_none());
         self.forget(before.as_ref());
         before
@@ -74,6 +78,8 @@ impl CellStore {
         let content = entry.get_mut().remove(cell);
         if entry.get().is_empty() {
             entry.remove();
+            let blocks = self.blocks.keys().map(|&(row, column)| [IVec2::new(column, row); 2]);
+            self.bounds = blocks.reduce(|[min, max], [block, _]| [min.min(block), max.max(block)]);
         }
         self.cells -= usize::from(content.is_some());
         self.forget(content.as_ref());
@@ -131,6 +137,12 @@ impl CellStore {
     /// Memory for the cells and their plants, without what map and allocator add. units: bytes.
     pub fn bytes(&self) -> usize {
         size_of::<Self>() + self.blocks.len() * (size_of::<Key>() + Block::BYTES) + self.heap_bytes
+    }
+
+    /// The least and the greatest corner (x, z) of all blocks, m.
+    pub(super) fn corners_m(&self) -> Option<[DVec2; 2]> {
+        let side_m = f64::from(self.cell_m) * f64::from(SIDE);
+        self.bounds.map(|[min, max]| [min.as_dvec2() * side_m, (max.as_dvec2() + 1.0) * side_m])
     }
 
     pub(super) fn block(&self, block: IVec2) -> Option<&Block> {
