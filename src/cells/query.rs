@@ -17,7 +17,9 @@ use bevy::math::{DVec2, IVec2, Vec2};
 pub use ray::RayHit;
 pub use trunk::Trunk;
 
-/// In this proportion a search widens.
+/// A search for the nearest begins with this share of a cell's side.
+const FIRST_REACH: f32 = 0.25;
+/// In this proportion it widens.
 const WIDENING: f32 = 4.0;
 
 /// A stem that was found.
@@ -48,7 +50,7 @@ impl CellStore {
         if !place_m.is_finite() || radius_m.is_nan() {
             return None;
         }
-        let mut reach_m = self.cell_m().min(radius_m);
+        let mut reach_m = (FIRST_REACH * self.cell_m()).min(radius_m);
         loop {
             let mut nearest: Option<Near> = None;
             self.visit_near(place_m, reach_m, |near| {

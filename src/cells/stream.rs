@@ -6,6 +6,7 @@
 //! in a queue of which each step takes the nearest, those in front of a viewer first.
 
 mod disc;
+mod urgency;
 
 use super::{cell::Cell, store::CellStore};
 use crate::setting::{SettingError, require};
@@ -16,15 +17,12 @@ use bevy::{
 use disc::{Disc, visit_difference};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
+use urgency::Urgency;
 
 /// After so much of a cell's side a viewer has moved.
 const STEP: f32 = 0.25;
 /// The most cells from a viewer to the keep radius: 830,000 in all.
 const FARTHEST_CELLS: f32 = 512.0;
-/// Cells that are not in front of a viewer wait as if they were so much farther.
-const BEHIND: f32 = 3.0;
-/// Nearer than this many cells, all cells count as in front.
-const AROUND_CELLS: f32 = 2.0;
 
 /// How far the forest is planted about viewers, and how fast.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
@@ -235,32 +233,6 @@ impl CellStream {
                 plant.push(cell);
             }
         }
-    }
-}
-
-/// The viewers as the queue sees them, in cells: (place, direction).
-struct Urgency(Vec<(Vec2, Vec2)>);
-
-impl Urgency {
-    fn new(viewpoints: &[Viewpoint], cell_m: f32) -> Self {
-        let one = |viewpoint: &Viewpoint| {
-            // Towards the middles of cells.
-            (viewpoint.eye_m.xz() / cell_m - 0.5, viewpoint.forward.xz().normalize_or_zero())
-        };
-        Self(viewpoints.iter().map(one).collect())
-    }
-
-    /// How long a cell may wait: the square of its distance, in cells, greater where no viewer looks. In front is what is
-    /// within 60° of the direction.
-    fn delay(&self, cell: IVec2) -> f32 {
-        let one = |&(place, forward): &(Vec2, Vec2)| {
-            let to = cell.as_vec2() - place;
-            let square = to.length_squared();
-            let ahead = to.dot(forward).max(0.0);
-            let in_front = 4.0 * ahead * ahead >= square || square <= AROUND_CELLS * AROUND_CELLS;
-            if in_front { square } else { square * BEHIND * BEHIND }
-        };
-        self.0.iter().map(one).fold(f32::INFINITY, f32::min)
     }
 }
 

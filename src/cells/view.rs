@@ -6,7 +6,7 @@
 //! them. A volume that lies behind no plane of the view is kept. Near an edge of the view that keeps a few cells too many,
 //! and never one too few.
 
-use super::{bounds::Bounds, cell::Spread, store::CellStore};
+use super::{bounds::Bounds, store::CellStore};
 use crate::scatter::GREATEST_SIZE;
 use bevy::math::{IVec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
