@@ -33,7 +33,8 @@
 //! | [`fire`] | fires that lean with it and give light, [`Fire`](fire::Fire) | sway, wind |
 //! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Terrain`](terrain::Terrain) | texture |
 //! | [`scatter`] | point patterns and forest plans: where plants stand | nobody |
-//! | [`forest`] | forests that grow from plans about the viewers, [`Forest`](forest::Forest) | scatter, terrain, tree |
+//! | [`forest`] | forests that grow from plans about the viewers, [`Forest`](forest::Forest) | scatter, terrain, tree, lod, sway |
+//! | [`cells`] | the forest's voxel grid: what is seen, at which level, what to plant, who stands where; no ECS | scatter |
 
 mod schedule;
 mod setting;
@@ -41,6 +42,7 @@ mod setting;
 mod shading;
 mod viewpoint;
 
+pub mod cells;
 pub mod dynamics;
 pub mod fire;
 pub mod forest;

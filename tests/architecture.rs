@@ -6,18 +6,19 @@ use std::{
 };
 
 /// A room and the rooms it may import. A room that is not here may not exist.
-const MAY_KNOW: [(&str, &[&str]); 10] = [
+const MAY_KNOW: [(&str, &[&str]); 12] = [
     ("wind", &[]),
     ("dynamics", &[]),
     ("texture", &[]),
     ("terrain", &["texture"]),
     ("scatter", &[]),
+    ("cells", &["scatter"]),
     ("tree", &["dynamics", "texture"]),
     ("lod", &["tree", "texture", "dynamics"]),
     ("sway", &["tree", "wind", "dynamics", "texture"]),
     ("grass", &["sway"]),
     ("fire", &["sway", "wind"]),
-    ("forest", &["scatter", "terrain", "tree"]),
+    ("forest", &["scatter", "terrain", "tree", "lod", "sway"]),
 ];
 
 /// Files that glue a room to the engine. All others but those of `sway` are pure: they can be read beside the

@@ -18,4 +18,5 @@ pub mod quadrat;
 pub use error::ScatterError;
 pub use ground::{Ground, LevelGround};
 pub use plan::ForestPlan;
-pub use planting::{Planted, Planter};
+pub(crate) use planting::GREATEST_SIZE;
+pub use planting::{Planted, Planter, Stem};

@@ -23,5 +23,6 @@ mod planted;
 mod planter;
 mod spacing;
 
-pub use planted::Planted;
+pub(crate) use planted::GREATEST_SIZE;
+pub use planted::{Planted, Stem};
 pub use planter::Planter;

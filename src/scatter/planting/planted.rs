@@ -2,7 +2,7 @@
 
 use std::f32::consts::TAU;
 
-use bevy::math::{DVec2, Vec3};
+use bevy::math::{DVec2, Vec2, Vec3};
 use rand::{Rng, RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rand_distr::{Distribution, StandardNormal};
 
@@ -11,7 +11,7 @@ use crate::scatter::plan::Stock;
 /// Size at the age at which a species is called full-grown: 95%.
 const LEFT_TO_GROW: f32 = 0.05;
 /// The greatest size that fits into a packed plant.
-const GREATEST_SIZE: f32 = 4.0;
+pub(crate) const GREATEST_SIZE: f32 = 4.0;
 /// Deviations beyond which a normal variable is drawn in: one plant in 16,000.
 const MOST_DEVIATIONS: f32 = 4.0;
 
@@ -82,6 +82,53 @@ impl Planted {
     }
 }
 
+/// What a packed plant still tells, rounded: 1 mm of place in a cell of 64 m, 0.1 mrad of turn, a day of season.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stem {
+    /// Where it leaves the ground, in the forest's own frame. units: m.
+    pub position: Vec3,
+    /// Turn about the vertical. units: rad, domain: \[0, 2π).
+    pub turn_rad: f32,
+    /// Its size, relative to a full-grown individual of its species. domain: \[0, 4\].
+    pub size: f32,
+    /// How far it is ahead of the forest's season. units: days, domain: \[-128, 127\].
+    pub season_days: f32,
+    /// A shade of its own, from -1 to 1.
+    pub tint: f32,
+    /// Number of its species among [`Planter::species`](super::Planter::species).
+    pub species: u8,
+    /// The low byte of the plant's seed.
+    pub seed: u8,
+}
+
+impl Stem {
+    /// Reads what [`Planted::pack`] wrote, of the same cell.
+    pub fn unpack(words: [u32; 4], corner_m: DVec2, cell_m: f32) -> Self {
+        let place = corner_m + Self::place_in_cell(words, cell_m).as_dvec2();
+        let [_, height, turn_size, rest] = words;
+        let [species, tint, season, seed] = rest.to_le_bytes();
+        Self {
+            position: Vec3::new(place.x as f32, f32::from_bits(height), place.y as f32),
+            turn_rad: (turn_size & 0xffff) as f32 / 65_536.0 * TAU,
+            size: Self::packed_size(words),
+            season_days: f32::from(season) - 128.0,
+            tint: f32::from(tint) / 127.0 - 1.0,
+            species,
+            seed,
+        }
+    }
+
+    /// Only the place (x, z) of a packed plant, from the corner of its cell, m.
+    pub(crate) fn place_in_cell([place, ..]: [u32; 4], cell_m: f32) -> Vec2 {
+        Vec2::new((place & 0xffff) as f32, (place >> 16) as f32) * (cell_m / 65_535.0)
+    }
+
+    /// Only the size of a packed plant.
+    pub(crate) fn packed_size(words: [u32; 4]) -> f32 {
+        (words[2] >> 16) as f32 * (GREATEST_SIZE / 65_535.0)
+    }
+}
+
 fn normal(random: &mut impl Rng) -> f32 {
     let value: f32 = StandardNormal.sample(random);
     value.clamp(-MOST_DEVIATIONS, MOST_DEVIATIONS)
@@ -139,19 +186,38 @@ mod tests {
     #[test]
     fn a_packed_plant_tells_the_same() {
         let corner = DVec2::new(-64.0, 64.0);
-        for plant in plants(&Stock::default()).into_iter().take(500) {
-            let plant = Planted { position: Vec3::new(-50.0, 321.5, 100.0), ..plant };
-            let [place, height, turn_size, rest] = plant.pack(corner, 64.0);
-            assert_relative_eq!((place & 0xffff) as f32 / 65_535.0 * 64.0, 14.0, epsilon = 1e-3);
-            assert_relative_eq!((place >> 16) as f32 / 65_535.0 * 64.0, 36.0, epsilon = 1e-3);
-            assert_eq!(f32::from_bits(height), 321.5);
-            let turn = (turn_size & 0xffff) as f32 / 65_536.0 * TAU;
-            assert!(((turn - plant.turn_rad + 1.0).rem_euclid(TAU) - 1.0).abs() < 1e-4);
-            assert_relative_eq!((turn_size >> 16) as f32 / 65_535.0 * 4.0, plant.size, epsilon = 1e-4);
-            let [species, tint, season, seed] = rest.to_le_bytes();
-            assert_eq!((species, seed), (5, plant.seed as u8));
-            assert_relative_eq!(f32::from(tint) / 127.0 - 1.0, plant.tint, epsilon = 0.005);
-            assert_relative_eq!(f32::from(season) - 128.0, plant.season_days, epsilon = 0.501);
+        for (number, plant) in plants(&Stock::default()).into_iter().take(500).enumerate() {
+            let across = number as f32 / 499.0 * 64.0;
+            let plant = Planted { position: Vec3::new(across - 64.0, 321.5, 128.0 - across), ..plant };
+            let stem = Stem::unpack(plant.pack(corner, 64.0), corner, 64.0);
+            assert_relative_eq!(stem.position.x, plant.position.x, epsilon = 1e-3);
+            assert_relative_eq!(stem.position.z, plant.position.z, epsilon = 1e-3);
+            assert_eq!(stem.position.y, 321.5);
+            assert!(((stem.turn_rad - plant.turn_rad + 1.0).rem_euclid(TAU) - 1.0).abs() < 1e-4);
+            assert!((0.0..TAU).contains(&stem.turn_rad));
+            assert_relative_eq!(stem.size, plant.size, epsilon = 1e-4);
+            assert_eq!((stem.species, stem.seed), (5, plant.seed as u8));
+            assert_relative_eq!(stem.tint, plant.tint, epsilon = 0.005);
+            assert_relative_eq!(stem.season_days, plant.season_days, epsilon = 0.501);
         }
+    }
+
+    #[test]
+    fn the_bits_are_where_a_shader_looks_for_them() {
+        let plant = Planted {
+            position: Vec3::new(14.0, 321.5, 36.0),
+            turn_rad: 0.25 * TAU,
+            size: 1.0,
+            age_years: 80.0,
+            season_days: -8.0,
+            tint: 1.0,
+            species: 5,
+            seed: 0x1234_56ab,
+        };
+        let [place, height, turn_size, rest] = plant.pack(DVec2::ZERO, 64.0);
+        assert_eq!([place & 0xffff, place >> 16], [14, 36].map(|part| (part * 65_535 + 32) / 64));
+        assert_eq!(f32::from_bits(height), 321.5);
+        assert_eq!([turn_size & 0xffff, turn_size >> 16], [0x4000, 0x4000]);
+        assert_eq!(rest.to_le_bytes(), [5, 254, 120, 0xab]);
     }
 }
