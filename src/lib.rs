@@ -87,6 +87,7 @@ impl PluginGroup for WindwoodPlugins {
             .add(grass::GrassDrawPlugin)
             .add(fire::FireDrawPlugin)
             .add(terrain::TerrainDrawPlugin)
+            .add(forest::ForestDrawPlugin)
             .add(wind::WindGizmoPlugin);
         group
     }

@@ -23,7 +23,7 @@ const MAY_KNOW: [(&str, &[&str]); 12] = [
 
 /// Files that glue a room to the engine. All others but those of `sway` are pure: they can be read beside the
 /// paper, and know no entities, systems or apps.
-const GLUE: [&str; 29] = [
+const GLUE: [&str; 35] = [
     "wind/cells.rs",
     "wind/clock.rs",
     "wind/current.rs",
@@ -45,6 +45,12 @@ const GLUE: [&str; 29] = [
     "fire/material.rs",
     "fire/mesh.rs",
     "forest/components.rs",
+    "forest/far/blocks.rs",
+    "forest/far/looks.rs",
+    "forest/far/material.rs",
+    "forest/far/mesh.rs",
+    "forest/far/near.rs",
+    "forest/far/plugin.rs",
     "forest/loader.rs",
     "forest/plugin.rs",
     "forest/stream.rs",

@@ -33,6 +33,8 @@ pub struct ForestSettings {
     pub species_folder: String,
     /// Trees stand as far as this from a viewpoint. units: m, domain: \[0, 20000\].
     pub trees_to_m: f32,
+    /// Beyond, trees are drawn as cards as far as this; 0 for none. units: m, domain: \[0, 50000\].
+    pub far_to_m: f32,
     /// Cells that are planted at once in the background. domain: \[1, 64\].
     pub cells_at_once: u32,
     /// Trees that come in a frame, at most. domain: \[1, 100000\].
@@ -41,7 +43,13 @@ pub struct ForestSettings {
 
 impl Default for ForestSettings {
     fn default() -> Self {
-        Self { species_folder: "species".into(), trees_to_m: 300.0, cells_at_once: 4, trees_per_frame: 64 }
+        Self {
+            species_folder: "species".into(),
+            trees_to_m: 300.0,
+            far_to_m: 2500.0,
+            cells_at_once: 4,
+            trees_per_frame: 64,
+        }
     }
 }
 
@@ -55,6 +63,7 @@ impl ForestSettings {
             return Err(SettingError::new("species_folder", &self.species_folder, "a folder of the assets"));
         }
         require("trees_to_m", self.trees_to_m, 0.0..=2e4)?;
+        require("far_to_m", self.far_to_m, 0.0..=5e4)?;
         require("cells_at_once", self.cells_at_once as f32, 1.0..=64.0)?;
         require("trees_per_frame", self.trees_per_frame as f32, 1.0..=1e5)
     }

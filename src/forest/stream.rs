@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// fro at a border makes nobody plant and clear.
 const HYSTERESIS: f32 = 1.15;
 
-type SharedGround = Arc<dyn Ground + Send + Sync>;
+pub(super) type SharedGround = Arc<dyn Ground + Send + Sync>;
 
 /// The cells of a [`Forest`].
 #[derive(Component)]
@@ -39,6 +39,7 @@ pub struct ForestCells {
     bare: Vec<IVec2>,
     eyes: Vec<Vec2>,
     looked_from: Vec<Vec2>,
+    generation: u64,
 }
 
 struct Cell {
@@ -46,6 +47,8 @@ struct Cell {
     planted: Vec<Planted>,
     /// Plants that have become trees.
     raised: usize,
+    /// Whether all of them are drawn.
+    dressed: bool,
 }
 
 impl ForestCells {
@@ -53,6 +56,58 @@ impl ForestCells {
     #[must_use]
     pub fn is_complete(&self) -> bool {
         !self.looked_from.is_empty() && self.queue.is_empty() && self.planting.is_empty() && self.bare.is_empty()
+    }
+
+    #[cfg(feature = "render")]
+    pub(super) fn shared_planter(&self) -> Arc<Planter> {
+        self.planter.clone()
+    }
+
+    #[cfg(feature = "render")]
+    pub(super) fn ground(&self) -> SharedGround {
+        self.ground.clone()
+    }
+
+    /// In the order of the planter's.
+    #[cfg(feature = "render")]
+    pub(super) fn species(&self) -> &[Handle<Species>] {
+        &self.species
+    }
+
+    /// Grows whenever the forest begins anew.
+    #[cfg(feature = "render")]
+    pub(super) fn generation(&self) -> u64 {
+        self.generation
+    }
+
+    #[cfg(feature = "render")]
+    pub(super) fn far_to_m(&self) -> f32 {
+        self.settings.far_to_m
+    }
+
+    #[cfg(feature = "render")]
+    pub(super) fn cells_at_once(&self) -> usize {
+        self.settings.cells_at_once as usize
+    }
+
+    /// The cell of the first viewer.
+    #[cfg(feature = "render")]
+    pub(super) fn centre(&self) -> Option<IVec2> {
+        self.looked_from.first().map(|eye| self.planter.cell_at(*eye))
+    }
+
+    /// Notes those cells all of whose trees have come and are drawn, as `is_dressed` says.
+    #[cfg(feature = "render")]
+    pub(super) fn note_dressed(&mut self, is_dressed: impl Fn(Entity) -> bool) {
+        for cell in self.cells.values_mut().filter(|cell| !cell.dressed && cell.planted.is_empty()) {
+            cell.dressed = is_dressed(cell.entity);
+        }
+    }
+
+    /// Cells all of whose trees are drawn.
+    #[cfg(feature = "render")]
+    pub(super) fn dressed(&self) -> impl Iterator<Item = IVec2> + '_ {
+        self.cells.iter().filter(|(_, cell)| cell.dressed).map(|(cell, _)| *cell)
     }
 
     /// The plan, ready to be asked what grows where.
@@ -121,6 +176,7 @@ pub(super) fn begin_forests(
             bare: Vec::new(),
             eyes: Vec::new(),
             looked_from: Vec::new(),
+            generation: before.map_or(0, |before| before.generation + 1),
         });
     }
 }
@@ -239,7 +295,7 @@ impl ForestCells {
             if !planted.is_empty() {
                 bare.push(*cell);
             }
-            cells.insert(*cell, Cell { entity: entity.id(), planted, raised: 0 });
+            cells.insert(*cell, Cell { entity: entity.id(), dressed: planted.is_empty(), planted, raised: 0 });
             false
         });
     }

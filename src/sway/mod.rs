@@ -35,6 +35,8 @@ pub use plugin::SwayPlugin;
 pub use response::{SwaySettings, WindResponse};
 
 #[cfg(feature = "render")]
+pub(crate) use material::SeasonUniform;
+#[cfg(feature = "render")]
 pub use {
     draw::{DrawPath, Foliage},
     draw_plugin::SwayDrawPlugin,

@@ -1,0 +1,105 @@
+//! The views of each species that grows in a forest, made in the background.
+
+use super::{
+    material::{FarMaterial, far_material},
+    near::NearCells,
+};
+use crate::{
+    forest::stream::ForestCells,
+    lod::{LevelSettings, Scene, ViewAtlas},
+    sway::StandTables,
+    tree::{Species, TreeModel, growth::age::Age, painting::paint},
+};
+use bevy::{
+    platform::collections::HashMap,
+    prelude::*,
+    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+};
+
+/// How species look from afar.
+#[derive(Resource, Default)]
+pub(super) struct FarLooks {
+    looks: HashMap<AssetId<Species>, FarLook>,
+    baking: Vec<(AssetId<Species>, Task<Baked>)>,
+}
+
+/// How one species looks from afar.
+pub(super) struct FarLook {
+    pub material: Handle<FarMaterial>,
+    /// How it ages: the views are of a mature tree, which is of size 1.
+    pub age: Age,
+    /// How far the mature tree reaches from its foot, m.
+    pub reach_m: f32,
+}
+
+struct Baked {
+    species: Species,
+    summer: [f32; 3],
+    atlas: ViewAtlas,
+}
+
+impl FarLooks {
+    pub fn get(&self, id: AssetId<Species>) -> Option<&FarLook> {
+        self.looks.get(&id)
+    }
+
+    fn bake(&mut self, id: AssetId<Species>, species: &Species) {
+        let species = species.clone();
+        self.baking.retain(|(other, _)| *other != id);
+        self.baking.push((id, AsyncComputeTaskPool::get().spawn(async move { bake(species) })));
+    }
+}
+
+fn bake(species: Species) -> Baked {
+    let model = TreeModel::bake(&species, species.age.mature_years, species.seed);
+    let textures = paint(&species);
+    let atlas = ViewAtlas::bake(&Scene::new(&species, &model, &textures), &LevelSettings::default().views);
+    Baked { summer: textures.foliage_colour(), atlas, species }
+}
+
+/// Starts making the views of species that have come or were changed, and takes over those that are made.
+pub(super) fn bake_far_looks(
+    mut looks: ResMut<FarLooks>,
+    mut images: ResMut<Assets<Image>>,
+    mut materials: ResMut<Assets<FarMaterial>>,
+    mut events: MessageReader<AssetEvent<Species>>,
+    tables: Res<StandTables>,
+    near: Res<NearCells>,
+    species: Res<Assets<Species>>,
+    forests: Query<&ForestCells>,
+) {
+    let changed = events.read().filter_map(|event| match event {
+        AssetEvent::Modified { id } => Some(*id),
+        _ => None,
+    });
+    for id in changed {
+        if let Some(species) = species.get(id).filter(|species| species.validate().is_ok() && looks.get(id).is_some()) {
+            looks.bake(id, species);
+        }
+    }
+    for handle in forests.iter().flat_map(ForestCells::species) {
+        let id = handle.id();
+        let is_known = looks.looks.contains_key(&id) || looks.baking.iter().any(|(other, _)| *other == id);
+        if let Some(species) = species.get(id).filter(|species| !is_known && species.validate().is_ok()) {
+            looks.bake(id, species);
+        }
+    }
+    let FarLooks { looks, baking } = &mut *looks;
+    baking.retain_mut(|(id, task)| {
+        let Some(Baked { species, summer, atlas }) = block_on(poll_once(task)) else { return true };
+        let material = far_material(&species, summer, &atlas, &mut images, &tables, near.buffer.clone());
+        let frame = atlas.frame;
+        let reach_m = frame.centre.length() + frame.radius_m.hypot(frame.half_height_m);
+        let handle = match looks.get(id) {
+            Some(look) => {
+                if let Some(mut worn) = materials.get_mut(&look.material) {
+                    *worn = material;
+                }
+                look.material.clone()
+            }
+            None => materials.add(material),
+        };
+        looks.insert(*id, FarLook { material: handle, age: species.age, reach_m });
+        false
+    });
+}

@@ -1,0 +1,133 @@
+//! The material of far trees.
+
+use super::mesh::ATTRIBUTE_FAR;
+use crate::{
+    lod::ViewAtlas,
+    shading::{define, image},
+    sway::{SeasonUniform, StandTables},
+    tree::Species,
+};
+use bevy::{
+    image::ImageAddressMode,
+    material::OpaqueRendererMethod,
+    mesh::MeshVertexBufferLayoutRef,
+    pbr::{ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline},
+    prelude::*,
+    render::{
+        render_resource::{AsBindGroup, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError},
+        storage::ShaderBuffer,
+    },
+    shader::ShaderRef,
+};
+
+/// A standard material on cards that wear the views of a tree.
+pub type FarMaterial = ExtendedMaterial<StandardMaterial, FarExtension>;
+
+/// The views of a species, and what all far trees share.
+#[derive(Asset, AsBindGroup, Reflect, Clone, Debug)]
+pub struct FarExtension {
+    #[texture(100)]
+    #[sampler(102)]
+    colour: Handle<Image>,
+    #[texture(101)]
+    surface: Handle<Image>,
+    /// The clock of the frame.
+    #[storage(103, read_only)]
+    frame: Handle<ShaderBuffer>,
+    #[uniform(104)]
+    views: ViewsUniform,
+    #[uniform(107)]
+    season: SeasonUniform,
+    /// Cells whose trees stand near.
+    #[storage(108, read_only)]
+    near: Handle<ShaderBuffer>,
+}
+
+/// `Views` of the shader.
+#[derive(ShaderType, Reflect, Clone, Copy, Debug, Default)]
+struct ViewsUniform {
+    centre: Vec3,
+    radius_m: f32,
+    half_height_m: f32,
+    across: f32,
+    translucency: f32,
+    padding: f32,
+}
+
+/// The material of a species' far trees. `summer` is the colour of its leaves.
+pub(super) fn far_material(
+    species: &Species,
+    summer: [f32; 3],
+    atlas: &ViewAtlas,
+    images: &mut Assets<Image>,
+    tables: &StandTables,
+    near: Handle<ShaderBuffer>,
+) -> FarMaterial {
+    let mips = (atlas.colour.mips.len() - 1) as f32;
+    let mut add = |texture| images.add(image(texture, ImageAddressMode::ClampToEdge, mips));
+    FarMaterial {
+        base: StandardMaterial {
+            alpha_mode: AlphaMode::Mask(0.5),
+            cull_mode: None,
+            perceptual_roughness: 0.85,
+            reflectance: 0.08,
+            diffuse_transmission: species.foliage.translucency,
+            opaque_render_method: OpaqueRendererMethod::Forward,
+            ..default()
+        },
+        extension: FarExtension {
+            colour: add(&atlas.colour),
+            surface: add(&atlas.surface),
+            frame: tables.frame.clone(),
+            views: ViewsUniform {
+                centre: atlas.frame.centre,
+                radius_m: atlas.frame.radius_m,
+                half_height_m: atlas.frame.half_height_m,
+                across: atlas.across as f32,
+                translucency: species.foliage.translucency,
+                padding: 0.0,
+            },
+            season: SeasonUniform::new(&species.phenology, summer),
+            near,
+        },
+    }
+}
+
+const CARD_SHADER: &str = "embedded://bevy_windwood/forest/shaders/far_card.wgsl";
+const COLOUR_SHADER: &str = "embedded://bevy_windwood/forest/shaders/far_colour.wgsl";
+const MASK_SHADER: &str = "embedded://bevy_windwood/forest/shaders/far_mask.wgsl";
+
+impl MaterialExtension for FarExtension {
+    fn vertex_shader() -> ShaderRef {
+        CARD_SHADER.into()
+    }
+
+    fn prepass_vertex_shader() -> ShaderRef {
+        CARD_SHADER.into()
+    }
+
+    fn fragment_shader() -> ShaderRef {
+        COLOUR_SHADER.into()
+    }
+
+    fn prepass_fragment_shader() -> ShaderRef {
+        MASK_SHADER.into()
+    }
+
+    /// One layout for the main pass, the prepass and the shadow pass, whose own vertex locations differ.
+    fn specialize(
+        _: &MaterialExtensionPipeline,
+        descriptor: &mut RenderPipelineDescriptor,
+        layout: &MeshVertexBufferLayoutRef,
+        _: MaterialExtensionKey<Self>,
+    ) -> Result<(), SpecializedMeshPipelineError> {
+        descriptor.vertex.buffers = vec![
+            layout
+                .0
+                .get_layout(&[Mesh::ATTRIBUTE_POSITION.at_shader_location(0), ATTRIBUTE_FAR.at_shader_location(8)])?,
+        ];
+        // Coordinates and colour carry the place on the tree and the direction to the eye to the fragments.
+        define(descriptor, &["VERTEX_UVS_A", "VERTEX_UVS_B", "VERTEX_COLORS"]);
+        Ok(())
+    }
+}

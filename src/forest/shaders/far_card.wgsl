@@ -1,0 +1,95 @@
+// A far tree as a card that faces the eye, or the light in the shadow pass. One vertex stage for all passes.
+
+#import bevy_pbr::mesh_functions
+#import bevy_pbr::mesh_view_bindings::view
+#import bevy_pbr::view_transformations::position_world_to_clip
+#import bevy_windwood::far
+
+#ifdef PREPASS_PIPELINE
+#import bevy_pbr::prepass_io::VertexOutput
+#else
+#import bevy_pbr::forward_io::VertexOutput
+#endif
+
+struct Vertex {
+    @builtin(instance_index) instance_index: u32,
+    // Where the stem leaves the ground.
+    @location(0) position: vec3<f32>,
+    // Corner, turn, size and tint: `FarTree::code` of `forest/far/mesh.rs`.
+    @location(8) far: u32,
+}
+
+// The cells whose trees stand near: first cell, side of a cell (bits), a spare word, then a word of bits a row. See `near.rs`.
+@group(#{MATERIAL_BIND_GROUP}) @binding(108) var<storage, read> near_cells: array<u32>;
+
+const NEAR_SIDE: i32 = 32;
+const TURN: f32 = 6.283185307179586;
+const GREATEST_SIZE: f32 = 4.0;
+
+fn stands_near(place: vec2<f32>) -> bool {
+    let cell_m = bitcast<f32>(near_cells[2]);
+    let first = vec2(bitcast<i32>(near_cells[0]), bitcast<i32>(near_cells[1]));
+    let at = vec2<i32>(floor(place / max(cell_m, 1e-3))) - first;
+    if any(at < vec2(0)) || any(at >= vec2(NEAR_SIDE)) {
+        return false;
+    }
+    return (near_cells[4 + at.y] >> u32(at.x) & 1u) == 1u;
+}
+
+fn direction_to_eye(place: vec3<f32>) -> vec3<f32> {
+    // The last element is 1 where rays are parallel, as those of the sun are.
+    if view.clip_from_view[3].w == 1.0 {
+        return view.world_from_view[2].xyz;
+    }
+    return normalize(view.world_position - place);
+}
+
+@vertex
+fn vertex(in: Vertex) -> VertexOutput {
+    var out: VertexOutput;
+    let world_from_local = mesh_functions::get_world_from_local(in.instance_index);
+    let foot = (world_from_local * vec4(in.position, 1.0)).xyz;
+    let corner = vec2(f32(in.far & 1u), f32((in.far >> 1u) & 1u)) * 2.0 - 1.0;
+    let turn = f32((in.far >> 2u) & 255u) / 256.0 * TURN;
+    let size = f32((in.far >> 10u) & 4095u) / 4095.0 * GREATEST_SIZE;
+    let tint = f32((in.far >> 22u) & 255u) / 255.0;
+
+    let centre = foot + far::turned(far::views.centre, turn) * size;
+    let to_eye = far::above_horizon(far::turned(direction_to_eye(centre), -turn));
+    let facing = far::basis_towards(to_eye);
+    let half = far::half_m(facing);
+    let point = far::views.centre + facing.right * (corner.x * half.x) + facing.up * (corner.y * half.y);
+    out.world_position = vec4(foot + far::turned(point, turn) * size, 1.0);
+    out.position = position_world_to_clip(out.world_position.xyz);
+    if stands_near(foot.xz) {
+        // All four corners are one point, and nothing is drawn.
+        out.position = vec4(0.0, 0.0, 2.0, 1.0);
+    }
+#ifdef UNCLIPPED_DEPTH_ORTHO_EMULATION
+    out.unclipped_depth = out.position.z;
+    out.position.z = min(out.position.z, 1.0);
+#endif
+
+    out.uv = far::view_place(to_eye);
+    out.uv_b = vec2(turn, tint);
+    out.color = vec4(point, tint);
+    let normal = far::turned(to_eye, turn);
+#ifdef PREPASS_PIPELINE
+#ifdef NORMAL_PREPASS_OR_DEFERRED_PREPASS
+    out.world_normal = normal;
+#endif
+#ifdef MOTION_VECTOR_PREPASS
+    out.previous_world_position = out.world_position;
+#endif
+#else
+    out.world_normal = normal;
+#endif
+#ifdef VERTEX_OUTPUT_INSTANCE_INDEX
+    out.instance_index = in.instance_index;
+#endif
+#ifdef VISIBILITY_RANGE_DITHER
+    out.visibility_range_dither =
+        mesh_functions::get_visibility_range_dither_level(in.instance_index, world_from_local[3]);
+#endif
+    return out;
+}

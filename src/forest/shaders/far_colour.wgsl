@@ -1,0 +1,37 @@
+// What a far tree looks like: its views, in the colours of the season, lit by their normals.
+
+#import bevy_pbr::forward_io::{FragmentOutput, VertexOutput}
+#import bevy_pbr::pbr_fragment::pbr_input_from_standard_material
+#import bevy_pbr::pbr_functions::{apply_pbr_lighting, main_pass_post_lighting_processing}
+#import bevy_windwood::{beam, far, season}
+
+@group(#{MATERIAL_BIND_GROUP}) @binding(103) var<storage, read> frame: beam::Frame;
+
+@fragment
+fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
+    let seen = far::seen_at(in.uv, in.color.xyz);
+    let tint = in.uv_b.y;
+    // Leaves come and go, and turn, at a place of the crown's own time.
+    let rank = fract(sin(dot(floor(in.color.xyz * 2.0), vec3(12.9898, 78.233, 37.719))) * 43758.547);
+    let state = season::leaves(frame.year, tint - 0.5, rank);
+    let is_leaf = seen.leaf > 0.3;
+    if seen.alpha < 0.5 || (is_leaf && rank > state.size) {
+        discard;
+    }
+    var colour = seen.colour;
+    if is_leaf {
+        let warmth = 0.5 + tint;
+        colour = season::recoloured(colour, state.autumn - state.youth, saturate(0.5 + 1.5 * (tint - 0.5)));
+        colour *= vec3(0.92 + 0.1 * warmth, 1.0 + 0.06 * (tint - 0.5), 1.05 - 0.12 * warmth);
+    }
+    var pbr_input = pbr_input_from_standard_material(in, is_front);
+    let normal = far::turned(seen.normal, in.uv_b.x);
+    pbr_input.N = normal;
+    pbr_input.world_normal = normal;
+    pbr_input.material.base_color = vec4(colour, 1.0);
+    pbr_input.material.diffuse_transmission = far::views.translucency * seen.leaf;
+    var out: FragmentOutput;
+    out.color = apply_pbr_lighting(pbr_input);
+    out.color = main_pass_post_lighting_processing(pbr_input, out.color);
+    return out;
+}
