@@ -5,7 +5,7 @@ use bevy::{
     camera_controller::free_camera::{FreeCamera, FreeCameraPlugin},
     prelude::*,
 };
-use bevy_windwood::{prelude::*, terrain::TerrainChunks};
+use bevy_windwood::{forest::FarBlocks, prelude::*, terrain::TerrainChunks};
 
 /// Adds the camera, its keys and the text.
 pub fn plugin(app: &mut App) {
@@ -51,10 +51,13 @@ fn tell(
     camera: Single<&Transform, With<Camera3d>>,
     chunks: Query<&TerrainChunks>,
     trees: Query<(), With<Tree>>,
+    far: Query<&FarBlocks>,
     mut text: Single<&mut TextSpan, With<Told>>,
 ) {
     let drawn: usize = chunks.iter().map(TerrainChunks::drawn).sum();
-    let told = format!("{:.0} m above the sea    {drawn} chunks    {} trees", camera.translation.y, trees.count());
+    let far: usize = far.iter().map(FarBlocks::trees).sum();
+    let told =
+        format!("{:.0} m above the sea    {drawn} chunks    {} trees, {far} far", camera.translation.y, trees.count());
     if text.0 != told {
         text.0 = told;
     }

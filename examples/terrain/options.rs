@@ -11,9 +11,12 @@ pub struct Options {
     /// Where to begin, or to look from.
     #[arg(long, value_enum, default_value_t = View::Valley)]
     pub view: View,
-    /// Trees stand as far as this from the camera; beyond, woods are a colour of the ground, m.
+    /// Trees stand as far as this from the camera, m.
     #[arg(long, default_value_t = 150.0, value_parser = trees_to)]
     pub trees_to: f32,
+    /// Beyond, trees are drawn as cards as far as this; farther, woods are a colour of the ground, m.
+    #[arg(long, default_value_t = 2500.0, value_parser = far_to)]
+    pub far_to: f32,
     /// Leaves the trees out.
     #[arg(long)]
     pub no_trees: bool,
@@ -55,6 +58,10 @@ pub enum View {
     Summit,
     /// From the air.
     Aerial,
+}
+
+fn far_to(text: &str) -> Result<f32, String> {
+    in_range(text, 0.0, 20_000.0, "m")
 }
 
 fn trees_to(text: &str) -> Result<f32, String> {

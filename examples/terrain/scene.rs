@@ -7,7 +7,7 @@ use crate::{
 };
 use bevy::{asset::LoadState, pbr::DistanceFog, prelude::*};
 use bevy_windwood::{
-    forest::{ForestCells, PlanCover},
+    forest::{FarBlocks, ForestCells, PlanCover},
     prelude::*,
     scatter::{ForestPlan, Planter},
     terrain::TerrainChunks,
@@ -59,8 +59,11 @@ pub fn is_ready(world: &mut World, options: &Options) -> Result<bool, String> {
     }
     let grounded = world.query::<&TerrainChunks>().iter(world).all(TerrainChunks::is_complete);
     let planted = options.no_trees || world.query::<&ForestCells>().iter(world).any(ForestCells::is_complete);
+    let far = options.no_trees
+        || options.far_to == 0.0
+        || world.query::<&FarBlocks>().iter(world).any(FarBlocks::is_complete);
     let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
-    Ok(world.resource::<ActiveSway>().is_ready() && grounded && planted && bare == 0)
+    Ok(world.resource::<ActiveSway>().is_ready() && grounded && planted && far && bare == 0)
 }
 
 /// Spawns everything but the camera.
@@ -86,7 +89,7 @@ pub fn build(
         GroundLook {
             grass_line_m: 3450.0,
             snow_line_m: 4050.0,
-            canopy_from_m: if options.no_trees { 0.0 } else { options.trees_to },
+            canopy_from_m: if options.no_trees { 0.0 } else { options.far_to.max(options.trees_to) },
             ..default()
         },
     ));
@@ -95,6 +98,8 @@ pub fn build(
             Forest::new(assets.load(PLAN)),
             ForestSettings {
                 trees_to_m: options.trees_to,
+                far_to_m: options.far_to,
+                cells_at_once: if options.headless { 64 } else { 4 },
                 trees_per_frame: if options.headless { 100_000 } else { 64 },
                 ..default()
             },

@@ -93,9 +93,9 @@ pub(super) fn far_material(
     }
 }
 
-const CARD_SHADER: &str = "embedded://bevy_windwood/forest/shaders/far_card.wgsl";
-const COLOUR_SHADER: &str = "embedded://bevy_windwood/forest/shaders/far_colour.wgsl";
-const MASK_SHADER: &str = "embedded://bevy_windwood/forest/shaders/far_mask.wgsl";
+const CARD_SHADER: &str = "embedded://bevy_windwood/forest/far/shaders/far_card.wgsl";
+const COLOUR_SHADER: &str = "embedded://bevy_windwood/forest/far/shaders/far_colour.wgsl";
+const MASK_SHADER: &str = "embedded://bevy_windwood/forest/far/shaders/far_mask.wgsl";
 
 impl MaterialExtension for FarExtension {
     fn vertex_shader() -> ShaderRef {

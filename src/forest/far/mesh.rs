@@ -8,7 +8,7 @@ use bevy::{
 };
 use std::f32::consts::TAU;
 
-/// Corner, turn, size and tint of a tree: `far` of the shader, see [`FarTree::code`].
+/// Corner, turn, size and tint of a tree: `code` of the shader, see [`FarTree::code`].
 pub(super) const ATTRIBUTE_FAR: MeshVertexAttribute =
     MeshVertexAttribute::new("FarTree", 0x4641_5254, VertexFormat::Uint32);
 

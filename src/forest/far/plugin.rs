@@ -22,10 +22,10 @@ impl Plugin for ForestDrawPlugin {
         if app.get_sub_app(RenderApp).is_none() {
             return;
         }
-        load_shader_library!(app, "../shaders/far.wgsl");
-        embedded_asset!(app, "../shaders/far_card.wgsl");
-        embedded_asset!(app, "../shaders/far_colour.wgsl");
-        embedded_asset!(app, "../shaders/far_mask.wgsl");
+        load_shader_library!(app, "shaders/far.wgsl");
+        embedded_asset!(app, "shaders/far_card.wgsl");
+        embedded_asset!(app, "shaders/far_colour.wgsl");
+        embedded_asset!(app, "shaders/far_mask.wgsl");
         let can_draw = resource_exists::<DrawPath>.and_then(resource_exists::<StandTables>);
         app.add_plugins(MaterialPlugin::<FarMaterial>::default())
             .init_resource::<NearCells>()

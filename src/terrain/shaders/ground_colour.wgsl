@@ -70,7 +70,7 @@ fn ground_colour(place: vec3<f32>, normal: vec3<f32>, covered: f32, distance: f3
     let bare = smoothstep(look.bare_from - 0.25 * span, look.bare_from + 0.5 * span, slope + 0.35 * span * ragged + 0.15 * span * (near.g - 0.5));
     colour = mix(colour, look.earth.rgb * clods, bare);
 
-    let seams = 0.35 + 0.55 * strata.b + 0.3 * turned.b + 0.25 * middle.b;
+    let seams = 0.45 + 0.45 * strata.b + nearness * (0.3 * turned.b + 0.25 * middle.b - 0.2) + 0.25 * (wide.b - 0.3);
     let stony = smoothstep(look.bare_to - 0.5 * span, look.bare_to + 0.25 * span, slope + 0.3 * span * ragged + 0.2 * span * (strata.b - 0.5));
     colour = mix(colour, look.rock.rgb * seams, stony);
 

@@ -16,7 +16,7 @@ struct Vertex {
     // Where the stem leaves the ground.
     @location(0) position: vec3<f32>,
     // Corner, turn, size and tint: `FarTree::code` of `forest/far/mesh.rs`.
-    @location(8) far: u32,
+    @location(8) code: u32,
 }
 
 // The cells whose trees stand near: first cell, side of a cell (bits), a spare word, then a word of bits a row. See `near.rs`.
@@ -33,12 +33,16 @@ fn stands_near(place: vec2<f32>) -> bool {
     if any(at < vec2(0)) || any(at >= vec2(NEAR_SIDE)) {
         return false;
     }
-    return (near_cells[4 + at.y] >> u32(at.x) & 1u) == 1u;
+    return ((near_cells[4 + at.y] >> u32(at.x)) & 1u) == 1u;
+}
+
+// Whether rays are parallel, as those of the sun are.
+fn is_parallel() -> bool {
+    return view.clip_from_view[3].w == 1.0;
 }
 
 fn direction_to_eye(place: vec3<f32>) -> vec3<f32> {
-    // The last element is 1 where rays are parallel, as those of the sun are.
-    if view.clip_from_view[3].w == 1.0 {
+    if is_parallel() {
         return view.world_from_view[2].xyz;
     }
     return normalize(view.world_position - place);
@@ -49,10 +53,10 @@ fn vertex(in: Vertex) -> VertexOutput {
     var out: VertexOutput;
     let world_from_local = mesh_functions::get_world_from_local(in.instance_index);
     let foot = (world_from_local * vec4(in.position, 1.0)).xyz;
-    let corner = vec2(f32(in.far & 1u), f32((in.far >> 1u) & 1u)) * 2.0 - 1.0;
-    let turn = f32((in.far >> 2u) & 255u) / 256.0 * TURN;
-    let size = f32((in.far >> 10u) & 4095u) / 4095.0 * GREATEST_SIZE;
-    let tint = f32((in.far >> 22u) & 255u) / 255.0;
+    let corner = vec2(f32(in.code & 1u), f32((in.code >> 1u) & 1u)) * 2.0 - 1.0;
+    let turn = f32((in.code >> 2u) & 255u) / 256.0 * TURN;
+    let size = f32((in.code >> 10u) & 4095u) / 4095.0 * GREATEST_SIZE;
+    let tint = f32((in.code >> 22u) & 255u) / 255.0;
 
     let centre = foot + far::turned(far::views.centre, turn) * size;
     let to_eye = far::above_horizon(far::turned(direction_to_eye(centre), -turn));
@@ -60,6 +64,10 @@ fn vertex(in: Vertex) -> VertexOutput {
     let half = far::half_m(facing);
     let point = far::views.centre + facing.right * (corner.x * half.x) + facing.up * (corner.y * half.y);
     out.world_position = vec4(foot + far::turned(point, turn) * size, 1.0);
+    if is_parallel() {
+        // The card that casts the shadow stands behind the tree: else it would darken half of the card that is seen.
+        out.world_position = vec4(out.world_position.xyz - view.world_from_view[2].xyz * (far::views.radius_m * size), 1.0);
+    }
     out.position = position_world_to_clip(out.world_position.xyz);
     if stands_near(foot.xz) {
         // All four corners are one point, and nothing is drawn.

@@ -20,9 +20,9 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     }
     var colour = seen.colour;
     if is_leaf {
-        let warmth = 0.5 + tint;
-        colour = season::recoloured(colour, state.autumn - state.youth, saturate(0.5 + 1.5 * (tint - 0.5)));
-        colour *= vec3(0.92 + 0.1 * warmth, 1.0 + 0.06 * (tint - 0.5), 1.05 - 0.12 * warmth);
+        let own = tint - 0.5;
+        colour = season::recoloured(colour, state.autumn - state.youth, saturate(0.5 + 1.5 * own));
+        colour *= vec3(1.0 + 0.2 * own, 1.0 + 0.06 * own, 1.0 - 0.25 * own);
     }
     var pbr_input = pbr_input_from_standard_material(in, is_front);
     let normal = far::turned(seen.normal, in.uv_b.x);
