@@ -6,6 +6,11 @@ use bevy::math::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
 /// Places are rounded by less than this within 100 km of the origin, m.
 const ROUNDING_M: f32 = 0.02;
 
+/// A length from 0 to `most_m`, m; what is no number is 0.
+pub(super) fn bounded(length_m: f32, most_m: f32) -> f32 {
+    if length_m > 0.0 { length_m.min(most_m) } else { 0.0 }
+}
+
 /// A box along the axes, m.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {

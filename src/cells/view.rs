@@ -6,7 +6,10 @@
 //! them. A volume that lies behind no plane of the view is kept. Near an edge of the view that keeps a few cells too many,
 //! and never one too few.
 
-use super::{bounds::Bounds, store::CellStore};
+use super::{
+    bounds::{Bounds, bounded},
+    store::CellStore,
+};
 use crate::scatter::GREATEST_SIZE;
 use bevy::math::{IVec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
 
@@ -93,8 +96,7 @@ impl CellStore {
 
 impl TreeExtent {
     fn bounded(self) -> Self {
-        let bounded = |length_m: f32| length_m.max(0.0).min(LARGEST_M);
-        Self { height_m: bounded(self.height_m), reach_m: bounded(self.reach_m) }
+        Self { height_m: bounded(self.height_m, LARGEST_M), reach_m: bounded(self.reach_m, LARGEST_M) }
     }
 }
 
@@ -155,10 +157,10 @@ impl Watch {
 impl Sun {
     /// How far along the light a box is swept.
     fn path(&self, bounds: &Bounds) -> Vec3 {
-        let longest_m = self.longest_m.max(0.0).min(LONGEST_SHADOW_M);
+        let longest_m = bounded(self.longest_m, LONGEST_SHADOW_M);
         let fall_m = bounds.top_m() - self.lowest_m;
         let sinks = self.direction.y < 0.0 && fall_m.is_finite();
-        let length_m = if sinks { (fall_m / -self.direction.y).max(0.0).min(longest_m) } else { longest_m };
+        let length_m = if sinks { bounded(fall_m / -self.direction.y, longest_m) } else { longest_m };
         self.direction * length_m
     }
 

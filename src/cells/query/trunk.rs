@@ -1,6 +1,10 @@
 //! A trunk as a ray meets it: a cone that stands upright.
 
+use crate::cells::bounds::bounded;
 use bevy::math::DVec3;
+
+/// Nothing that grows is larger, m.
+const LARGEST_M: f32 = 1000.0;
 
 /// The trunk of a full-grown tree of a species; smaller trees have it in proportion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -17,7 +21,7 @@ impl Trunk {
     /// Of a tree of a size, relative to a full-grown individual. What is no length is 0, and nothing that grows is larger
     /// than a kilometre.
     pub(super) fn of_size(self, size: f32) -> Self {
-        let length = |length_m: f32| (size * length_m).max(0.0).min(1000.0);
+        let length = |length_m: f32| bounded(size * length_m, LARGEST_M);
         let radius_m = length(self.radius_m);
         Self { radius_m, top_radius_m: length(self.top_radius_m).min(radius_m), height_m: length(self.height_m) }
     }
@@ -33,7 +37,7 @@ impl Trunk {
         if self.height_m > 0.0 { -narrows_m / f64::from(self.height_m) } else { 0.0 }
     }
 
-    /// With p + t d, the radius r at the foot and the taper k: |p + t d|² on the map = (r + k (p_y + t d_y))².
+    /// With p + t d, the radius r at the foot and the taper k: |p + t d|² on the map = (r + k (p + t d)·up)².
     fn hit_side(self, origin: DVec3, direction: DVec3) -> Option<f64> {
         let taper = self.taper();
         let height_m = f64::from(self.height_m);

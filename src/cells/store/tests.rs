@@ -17,7 +17,7 @@ pub(in crate::cells) fn cell_of(cell: IVec2, plants: usize, relief_m: f32, seed:
             [corner_m.x, corner_m.y].map(|edge_m| (edge_m + random.random_range(0.0..f64::from(CELL_M))) as f32);
         planted.push(Planted {
             position: Vec3::new(x, relief_m * random.random_range(-1.0..=1.0_f32), z),
-            turn_rad: random.random_range(0.0..6.28),
+            turn_rad: random.random_range(0.0..std::f32::consts::TAU),
             size: random.random_range(0.2..1.4),
             age_years: 80.0,
             season_days: random.random_range(-9.0..9.0),
