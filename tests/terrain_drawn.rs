@@ -49,7 +49,7 @@ fn nothing_shines_through_the_ground() {
         let eye =
             Vec3::new(place.x as f32, ground.height_m(place) as f32 + random.random_range(3.0..60.0), place.y as f32);
         // Down far enough that no horizon is in the picture.
-        let (yaw, pitch) = (random.random_range(0.0..6.28), random.random_range(-1.5..-0.9));
+        let (yaw, pitch) = (random.random_range(0.0..std::f32::consts::TAU), random.random_range(-1.5..-0.9));
         let turned = Quat::from_euler(EulerRot::YXZ, yaw, pitch, 0.0);
         *app.world_mut().get_mut::<Transform>(camera).expect("the camera") =
             Transform::from_translation(eye).with_rotation(turned);

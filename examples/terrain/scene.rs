@@ -5,7 +5,7 @@ use crate::{
     landscape::{FINEST_CELL_M, Landscape},
     options::{Options, View},
 };
-use bevy::{asset::LoadState, pbr::DistanceFog, prelude::*};
+use bevy::{asset::LoadState, math::DVec2, pbr::DistanceFog, prelude::*};
 use bevy_windwood::{
     forest::{FarBlocks, ForestCells, PlanCover},
     prelude::*,
@@ -105,7 +105,7 @@ pub fn build(
             },
         ));
     }
-    let [from, to] = ground.corners_m.map(|corner| corner.as_vec2());
+    let [from, to] = ground.corners_m.map(DVec2::as_vec2);
     let middle = 0.5 * (from + to);
     let sky = (Vec3::new(middle.x, 2500.0, middle.y), 60_000.0);
     spawn_daylight(&mut commands, &mut meshes, &mut materials, sky, (60.0, 600.0));

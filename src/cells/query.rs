@@ -92,17 +92,17 @@ impl CellStore {
         let cell_m = self.cell_m();
         let mut square = radius_m * radius_m;
         self.visit_blocks(self.blocks_about(place_m, radius_m), |place, block: &Block| {
-            let from_corner = self.from_corner(place_m, place * SIDE);
-            if square_to_box(from_corner, cell_m * SIDE as f32) > square {
+            let off_corner = self.off_corner(place_m, place * SIDE);
+            if square_to_box(off_corner, cell_m * SIDE as f32) > square {
                 return;
             }
             for (cell, content) in block.cells(place) {
-                let from_corner = self.from_corner(place_m, cell);
-                if square_to_box(from_corner, cell_m) > square {
+                let off_corner = self.off_corner(place_m, cell);
+                if square_to_box(off_corner, cell_m) > square {
                     continue;
                 }
                 for (index, record) in content.records().iter().enumerate() {
-                    let to_stem = Stem::place_in_cell(*record, cell_m).distance_squared(from_corner);
+                    let to_stem = Stem::place_in_cell(*record, cell_m).distance_squared(off_corner);
                     if to_stem <= square {
                         square = visit(Near { cell, index, square: to_stem });
                     }
@@ -112,7 +112,7 @@ impl CellStore {
     }
 
     /// A place, from the least corner of a cell, m.
-    fn from_corner(&self, place_m: Vec2, cell: IVec2) -> Vec2 {
+    fn off_corner(&self, place_m: Vec2, cell: IVec2) -> Vec2 {
         let corner: DVec2 = self.corner_m(cell);
         (place_m.as_dvec2() - corner).as_vec2()
     }

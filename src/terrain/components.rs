@@ -129,7 +129,7 @@ impl Default for GroundLook {
             rock: [0.44, 0.43, 0.42],
             snow: [0.93, 0.95, 0.98],
             litter: [0.29, 0.24, 0.15],
-            canopy: [0.12, 0.19, 0.11],
+            canopy: [0.11, 0.165, 0.095],
             bare_slope_deg: [27.0, 40.0],
             grass_line_m: 1e5,
             snow_line_m: 1e5,

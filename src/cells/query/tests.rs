@@ -114,6 +114,7 @@ fn a_trunk_that_reaches_over_the_border_of_its_cell_is_hit_from_the_neighbour() 
             position: Vec3::new(x, 0.0, 20.0),
             turn_rad: 0.0,
             size: 1.0,
+            vigour: 1.0,
             age_years: 80.0,
             season_days: 0.0,
             tint: 0.0,

@@ -19,6 +19,7 @@ pub(in crate::cells) fn cell_of(cell: IVec2, plants: usize, relief_m: f32, seed:
             position: Vec3::new(x, relief_m * random.random_range(-1.0..=1.0_f32), z),
             turn_rad: random.random_range(0.0..std::f32::consts::TAU),
             size: random.random_range(0.2..1.4),
+            vigour: 1.0,
             age_years: 80.0,
             season_days: random.random_range(-9.0..9.0),
             tint: random.random_range(-1.0..1.0),

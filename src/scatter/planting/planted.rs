@@ -208,6 +208,7 @@ mod tests {
             position: Vec3::new(14.0, 321.5, 36.0),
             turn_rad: 0.25 * TAU,
             size: 1.0,
+            vigour: 1.0,
             age_years: 80.0,
             season_days: -8.0,
             tint: 1.0,
