@@ -21,6 +21,17 @@ fn the_mode_shape_is_the_same_in_both_languages() {
 }
 
 #[test]
+fn the_cells_that_stand_near_are_a_square_of_one_size_in_both_languages() {
+    let number = |text: &str, name: &str| -> f32 {
+        let line = text.lines().find(|line| line.contains(&format!("const {name}:"))).expect("it is there");
+        line.split('=').nth(1).expect("it has a value").trim().trim_end_matches(';').parse().expect("a number")
+    };
+    let shader = include_str!("../src/forest/far/shaders/far_card.wgsl");
+    assert_eq!(number(include_str!("../src/forest/far/near.rs"), "SIDE"), number(shader, "NEAR_SIDE"));
+    assert_eq!(number(include_str!("../src/forest/far/mesh.rs"), "GREATEST_SIZE"), number(shader, "GREATEST_SIZE"));
+}
+
+#[test]
 fn the_times_of_a_leaf_are_the_same_in_both_languages() {
     let code = include_str!("../src/tree/phenology.rs");
     let shader = include_str!("../src/sway/shaders/season.wgsl");

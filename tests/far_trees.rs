@@ -1,0 +1,65 @@
+//! Far trees cover as much of the picture as the trees that they stand for.
+
+#[path = "../examples/support/capture.rs"]
+mod capture;
+mod support;
+
+use bevy::prelude::*;
+use bevy_windwood::{
+    forest::{FarBlocks, ForestCells},
+    prelude::*,
+    scatter::{
+        ForestPlan,
+        plan::{Area, Shape, Stock},
+    },
+};
+use std::time::Duration;
+
+const SIZE: (u32, u32) = (320, 200);
+
+/// Pixels that trees cover of a picture of the same small wood, 250 m away, drawn near or far.
+fn covered(settings: ForestSettings) -> usize {
+    let mut app = support::headless_app(Duration::ZERO, None);
+    capture::begin(&mut app).expect("a graphics device");
+    let canvas = capture::canvas(&mut app, SIZE);
+    let area = Area {
+        shape: Shape::Rectangle { min_m: [-60.0, -290.0], max_m: [60.0, -230.0] },
+        density_per_ha: 30.0,
+        stock: vec![Stock { species: "fir".into(), age_years: 80.0, age_spread_years: 8.0, ..default() }],
+        ..default()
+    };
+    let plan = ForestPlan { seed: 3, areas: vec![area], ..default() };
+    let plan = app.world_mut().resource_mut::<Assets<ForestPlan>>().add(plan);
+    let world = app.world_mut();
+    world.insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
+    world.insert_resource(GlobalAmbientLight { brightness: 2000.0, ..default() });
+    let wants_far = settings.far_to_m > 0.0;
+    world.spawn((Forest::new(plan), settings));
+    world.spawn((
+        capture::camera(&canvas),
+        Projection::Perspective(PerspectiveProjection { fov: 0.45, ..default() }),
+        Transform::from_xyz(0.0, 12.0, 0.0).looking_at(Vec3::new(0.0, 9.0, -250.0), Vec3::Y),
+    ));
+    let ready = support::update_until(&mut app, |world| {
+        let cells = world.query::<&ForestCells>().iter(world).any(ForestCells::is_complete);
+        let far = !wants_far || world.query::<&FarBlocks>().iter(world).any(FarBlocks::is_complete);
+        let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
+        cells && far && bare == 0
+    });
+    assert!(ready, "the wood did not come about");
+    // Meshes and pipelines of what has come last take frames of their own.
+    (0..6).for_each(|_| capture::step(&mut app));
+    let picture = capture::capture(&mut app, &canvas, SIZE).expect("a picture");
+    picture.pixels().filter(|pixel| !(pixel.0[0] > 200 && pixel.0[1] < 60 && pixel.0[2] > 200)).count()
+}
+
+#[test]
+fn cards_cover_as_much_as_the_trees_that_they_stand_for() {
+    let near = ForestSettings { trees_to_m: 400.0, far_to_m: 0.0, trees_per_frame: 1000, ..default() };
+    let far = ForestSettings { trees_to_m: 0.0, far_to_m: 400.0, ..default() };
+    let (trees, cards) = (covered(near), covered(far));
+    assert!(trees > 1500, "{trees} pixels");
+    let ratio = cards as f64 / trees as f64;
+    assert!((0.75..1.35).contains(&ratio), "cards cover {cards} pixels, trees {trees}");
+    println!("cards over trees: {ratio:.3}");
+}
