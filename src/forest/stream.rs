@@ -235,7 +235,11 @@ fn tree(plant: &Planted, species: &[Handle<Species>]) -> impl Bundle {
         .with_scale(Vec3::splat(plant.vigour));
     let species = species[usize::from(plant.species)].clone();
     (
-        Tree::new(species).with_age(plant.age_years).with_seed(u64::from(plant.seed)).with_season(plant.season_days),
+        Tree::new(species)
+            .with_age(plant.age_years)
+            .with_seed(u64::from(plant.seed))
+            .with_season(plant.season_days)
+            .with_tint(plant.tint),
         place,
     )
 }

@@ -68,7 +68,7 @@ pub(super) fn dress_trees(
             warn!("windwood: this device can pose {} beams at once; trees beyond that stand still", path.pose_limit);
             *warned = true;
         }
-        let tint = (grown.seed >> 56) as u32;
+        let tint = tree.tint_byte(grown.seed);
         let tag = MeshTag(standing.map_or(0, |standing| standing.row) | tint << TAG_TREE_BITS);
         // The old row, if there is one, is given back when the component goes.
         let mut tree = commands.entity(entity);

@@ -21,12 +21,15 @@ pub struct Tree {
     /// How far it is ahead of the [`Season`](crate::tree::Season), or behind it (below 0): trees of one kind do not all turn
     /// on one day. units: days, clamped to half a year; what is not a number is 0.
     pub season_days: f32,
+    /// A shade of its own, from -1 to 1, which others are clamped to; `None` takes it from the seed. It is looked up when the
+    /// tree gets its model.
+    pub tint: Option<f32>,
 }
 
 impl Tree {
     /// A tree whose variant follows from its place.
     pub fn new(species: Handle<Species>) -> Self {
-        Self { species, seed: None, age_years: None, season_days: 0.0 }
+        Self { species, seed: None, age_years: None, season_days: 0.0, tint: None }
     }
 
     /// Sets the seed that chooses the variant.
@@ -45,6 +48,19 @@ impl Tree {
     pub fn with_season(mut self, days: f32) -> Self {
         self.season_days = days;
         self
+    }
+
+    /// Sets a shade of its own, -1 to 1.
+    pub fn with_tint(mut self, tint: f32) -> Self {
+        self.tint = Some(tint);
+        self
+    }
+
+    /// Its shade in a byte, for a tree of that well-mixed seed.
+    #[cfg(feature = "render")]
+    pub(crate) fn tint_byte(&self, seed: u64) -> u32 {
+        let byte = |tint: f32| ((0.5 + 0.5 * tint.clamp(-1.0, 1.0)) * 255.0).round() as u32;
+        self.tint.filter(|tint| !tint.is_nan()).map_or((seed >> 56) as u32, byte)
     }
 
     /// How far it is ahead of the season, in years.
@@ -141,3 +157,18 @@ pub struct LeafOf(pub Entity);
 #[derive(Component, Debug, Default)]
 #[relationship_target(relationship = LeafOf, linked_spawn)]
 pub struct TreeLeaves(Vec<Entity>);
+
+#[cfg(all(test, feature = "render"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shades_and_seasons_out_of_range_are_harmless() {
+        let tree = Tree::new(Handle::default());
+        assert_eq!(tree.tint_byte(0xab << 56), 0xab);
+        let tint = |tint| tree.clone().with_tint(tint).tint_byte(7);
+        assert_eq!([-1.0, 0.0, 1.0, 9.0, f32::NAN].map(tint), [0, 128, 255, 255, 0]);
+        let shift = |days| tree.clone().with_season(days).season_shift();
+        assert_eq!([73.0, 1e9, f32::NAN].map(shift), [0.2, 0.5, 0.0]);
+    }
+}
