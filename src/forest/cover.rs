@@ -37,7 +37,7 @@ pub struct PlanCover {
 }
 
 /// Ground under one crown, on average, m^2: Hemery, Savill & Pryor (2005) have crowns of 4 to 9 m across for stems of 20
-/// to 40 cm.
+/// to 40 cm (cited from memory).
 const CROWN_M2: f32 = 30.0;
 
 impl PlanCover {

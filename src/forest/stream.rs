@@ -307,7 +307,11 @@ impl ForestCells {
 
 /// From the nearest viewpoint to the nearest place of a cell, m.
 fn distance_m(planter: &Planter, cell: IVec2, eyes: &[Vec2]) -> f32 {
-    let corner = planter.corner_m(cell).as_vec2();
-    let to_eye = |eye: &Vec2| eye.clamp(corner, corner + planter.cell_m()).distance(*eye);
+    distance_to_square_m(planter.corner_m(cell).as_vec2(), planter.cell_m(), eyes)
+}
+
+/// From the nearest viewpoint to the nearest place of a square, m.
+pub(super) fn distance_to_square_m(corner: Vec2, side_m: f32, eyes: &[Vec2]) -> f32 {
+    let to_eye = |eye: &Vec2| eye.clamp(corner, corner + side_m).distance(*eye);
     eyes.iter().map(to_eye).fold(f32::INFINITY, f32::min)
 }

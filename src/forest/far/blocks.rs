@@ -5,7 +5,11 @@ use super::{
     mesh::{FarTree, block_mesh},
 };
 use crate::{
-    forest::stream::ForestCells, scatter::Planted, sway::DrawPath, tree::growth::age::Age, viewpoint::Viewpoints,
+    forest::stream::{ForestCells, distance_to_square_m},
+    scatter::Planted,
+    sway::DrawPath,
+    tree::growth::age::Age,
+    viewpoint::Viewpoints,
 };
 use bevy::{
     camera::{
@@ -31,6 +35,7 @@ pub struct FarBlocks {
     planting: Vec<(IVec2, Task<Vec<Drawn>>)>,
     /// Blocks that are wanted and not there, the nearest last.
     queue: Vec<IVec2>,
+    eyes: Vec<Vec2>,
     looked_from: Vec<Vec2>,
     trees: usize,
 }
@@ -54,6 +59,7 @@ impl FarBlocks {
             blocks: HashMap::default(),
             planting: Vec::new(),
             queue: Vec::new(),
+            eyes: Vec::new(),
             looked_from: Vec::new(),
             trees: 0,
         }
@@ -87,11 +93,16 @@ pub(super) fn stream_far(
     }
     for (entity, forest, blocks) in &mut forests {
         let dressed = forest.species().iter().all(|species| looks.get(species.id()).is_some());
-        let Some(mut blocks) = blocks.filter(|blocks| blocks.generation == forest.generation()) else {
-            if dressed && forest.far_to_m() > 0.0 {
-                commands.entity(entity).despawn_related_far().insert(FarBlocks::new(forest.generation()));
+        let mut blocks = match blocks {
+            Some(blocks) if blocks.generation == forest.generation() => blocks,
+            older => {
+                if dressed && forest.far_to_m() > 0.0 {
+                    let meshes = older.iter().flat_map(|older| older.blocks.values().flatten());
+                    meshes.for_each(|mesh| commands.entity(*mesh).despawn());
+                    commands.entity(entity).insert(FarBlocks::new(forest.generation()));
+                }
+                continue;
             }
-            continue;
         };
         let blocks = &mut *blocks;
         blocks.look(forest, &viewpoints, &mut commands);
@@ -142,16 +153,17 @@ impl FarBlocks {
     fn look(&mut self, forest: &ForestCells, viewpoints: &Viewpoints, commands: &mut Commands) {
         let planter = forest.planter();
         let side_m = planter.cell_m() * BLOCK_CELLS as f32;
-        let eyes: Vec<Vec2> = viewpoints.iter().map(Vec3::xz).collect();
+        self.eyes.clear();
+        self.eyes.extend(viewpoints.iter().map(Vec3::xz));
         let rests = |(now, then): (&Vec2, &Vec2)| now.distance(*then) < 0.25 * side_m;
-        if eyes.is_empty() || eyes.len() == self.looked_from.len() && eyes.iter().zip(&self.looked_from).all(rests) {
+        let nobody = self.eyes.is_empty();
+        if nobody || self.eyes.len() == self.looked_from.len() && self.eyes.iter().zip(&self.looked_from).all(rests) {
             return;
         }
-        let distance_m = |block: IVec2| {
-            let corner = planter.corner_m(block * BLOCK_CELLS).as_vec2();
-            let to_eye = |eye: &Vec2| eye.clamp(corner, corner + side_m).distance(*eye);
-            eyes.iter().map(to_eye).fold(f32::INFINITY, f32::min)
-        };
+        self.looked_from.clone_from(&self.eyes);
+        let eyes = std::mem::take(&mut self.eyes);
+        let distance_m =
+            |block: IVec2| distance_to_square_m(planter.corner_m(block * BLOCK_CELLS).as_vec2(), side_m, &eyes);
         let far_m = forest.far_to_m();
         let is_near = |block: &IVec2| distance_m(*block) <= HYSTERESIS * far_m;
         self.planting.retain(|(block, _)| is_near(block));
@@ -179,7 +191,7 @@ impl FarBlocks {
         }
         self.queue.sort_by_cached_key(|block| (std::cmp::Reverse(distance_m(*block) as u32), block.x, block.y));
         self.queue.dedup();
-        self.looked_from = eyes;
+        self.eyes = eyes;
     }
 
     /// Takes over blocks that have been planted.
@@ -218,23 +230,5 @@ impl FarBlocks {
             blocks.insert(*block, entities);
             false
         });
-    }
-}
-
-/// Takes the blocks of an older generation of a forest away.
-trait ClearFar {
-    fn despawn_related_far(&mut self) -> &mut Self;
-}
-
-impl ClearFar for EntityCommands<'_> {
-    fn despawn_related_far(&mut self) -> &mut Self {
-        self.queue(|mut forest: EntityWorldMut| {
-            let Some(blocks) = forest.take::<FarBlocks>() else { return };
-            forest.world_scope(|world| {
-                blocks.blocks.into_values().flatten().for_each(|mesh| {
-                    world.despawn(mesh);
-                });
-            });
-        })
     }
 }

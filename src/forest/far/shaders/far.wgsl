@@ -98,14 +98,6 @@ fn views_around(place: vec2<f32>) -> Three {
     return Three(low, low + beside, low + 1.0, vec3(1.0 - more, more - less, less));
 }
 
-fn alpha_at(place: vec2<f32>, point: vec3<f32>) -> f32 {
-    let three = views_around(place);
-    let a = textureSample(colours, views_sampler, atlas_place(three.a, point)).a;
-    let b = textureSample(colours, views_sampler, atlas_place(three.b, point)).a;
-    let c = textureSample(colours, views_sampler, atlas_place(three.c, point)).a;
-    return dot(three.weights, vec3(a, b, c));
-}
-
 fn seen_at(place: vec2<f32>, point: vec3<f32>) -> Seen {
     let three = views_around(place);
     let uv_a = atlas_place(three.a, point);
@@ -128,6 +120,11 @@ fn seen_at(place: vec2<f32>, point: vec3<f32>) -> Seen {
         normalize(normal + vec3(0.0, 1e-4, 0.0)),
         dot(share, vec3(surface_a.a, surface_b.a, surface_c.a)),
     );
+}
+
+// When in the year the leaves at a place of the crown come and go, 0..1 among all.
+fn leaf_rank(point: vec3<f32>) -> f32 {
+    return fract(sin(dot(floor(point * 2.0), vec3(12.9898, 78.233, 37.719))) * 43758.547);
 }
 
 // Turned about the vertical.

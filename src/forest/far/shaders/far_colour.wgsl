@@ -12,7 +12,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     let seen = far::seen_at(in.uv, in.color.xyz);
     let tint = in.uv_b.y;
     // Leaves come and go, and turn, at a place of the crown's own time.
-    let rank = fract(sin(dot(floor(in.color.xyz * 2.0), vec3(12.9898, 78.233, 37.719))) * 43758.547);
+    let rank = far::leaf_rank(in.color.xyz);
     let state = season::leaves(frame.year, tint - 0.5, rank);
     let is_leaf = seen.leaf > 0.3;
     if seen.alpha < 0.5 || (is_leaf && rank > state.size) {

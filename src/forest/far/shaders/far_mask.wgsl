@@ -8,7 +8,7 @@
 
 fn cut_out(in: prepass_io::VertexOutput) {
     let seen = far::seen_at(in.uv, in.color.xyz);
-    let rank = fract(sin(dot(floor(in.color.xyz * 2.0), vec3(12.9898, 78.233, 37.719))) * 43758.547);
+    let rank = far::leaf_rank(in.color.xyz);
     let state = season::leaves(frame.year, in.uv_b.y - 0.5, rank);
     if seen.alpha < 0.5 || (seen.leaf > 0.3 && rank > state.size) {
         discard;
