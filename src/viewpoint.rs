@@ -1,5 +1,6 @@
 //! From where the world is looked at.
 
+use crate::cells;
 use bevy::prelude::*;
 
 /// A place about which ground and forest are kept fine. Every `Camera3d` has one; on a server give it to the players. A
@@ -18,9 +19,20 @@ pub(crate) struct Viewpoints<'w, 's> {
 impl Viewpoints<'_, '_> {
     /// Their places in the world; none that is not a number.
     pub(crate) fn iter(&self) -> impl Iterator<Item = Vec3> + '_ {
+        self.frames().map(GlobalTransform::translation)
+    }
+
+    /// Fills `viewpoints` with where they are and where they look.
+    pub(crate) fn fill(&self, viewpoints: &mut Vec<cells::Viewpoint>) {
+        viewpoints.clear();
+        let one = |at: &GlobalTransform| cells::Viewpoint { eye_m: at.translation(), forward: at.forward().as_vec3() };
+        viewpoints.extend(self.frames().map(one));
+    }
+
+    fn frames(&self) -> impl Iterator<Item = &GlobalTransform> {
         let counts = |camera: Option<&Camera>| camera.is_none_or(|camera| camera.is_active);
         let places = self.places.iter().filter(move |(_, camera)| counts(*camera));
-        places.map(|(place, _)| place.translation()).filter(|place| place.is_finite())
+        places.map(|(place, _)| place).filter(|place| place.translation().is_finite())
     }
 }
 

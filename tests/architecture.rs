@@ -18,12 +18,12 @@ const MAY_KNOW: [(&str, &[&str]); 12] = [
     ("sway", &["tree", "wind", "dynamics", "texture"]),
     ("grass", &["sway"]),
     ("fire", &["sway", "wind"]),
-    ("forest", &["scatter", "terrain", "tree", "lod", "sway"]),
+    ("forest", &["scatter", "cells", "terrain", "tree", "lod", "sway"]),
 ];
 
 /// Files that glue a room to the engine. All others but those of `sway` are pure: they can be read beside the
 /// paper, and know no entities, systems or apps.
-const GLUE: [&str; 35] = [
+const GLUE: [&str; 36] = [
     "wind/cells.rs",
     "wind/clock.rs",
     "wind/current.rs",
@@ -53,7 +53,8 @@ const GLUE: [&str; 35] = [
     "forest/far/plugin.rs",
     "forest/loader.rs",
     "forest/plugin.rs",
-    "forest/stream.rs",
+    "forest/cells.rs",
+    "forest/near.rs",
     "terrain/components.rs",
     "terrain/material.rs",
     "terrain/plugin.rs",

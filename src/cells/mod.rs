@@ -27,5 +27,5 @@ pub use cell::Cell;
 pub use level::{CellLevels, Lens, Level, LevelDistances, LevelSwitches};
 pub use query::{Found, RayHit, Trunk};
 pub use store::CellStore;
-pub use stream::{CellStream, Orders, StreamSettings, Viewpoint};
+pub use stream::{CellSet, CellStream, Orders, StreamSettings, Viewpoint};
 pub use view::{Seen, Sun, TreeExtent, View};

@@ -52,7 +52,7 @@ impl StreamSettings {
     /// # Errors
     /// The first field outside its domain.
     pub fn validate(&self, cell_m: f32) -> Result<(), SettingError> {
-        require("cell_m", cell_m, 8.0..=1024.0)?;
+        require("cell_m", cell_m, 8.0..=8192.0)?;
         require("keep_m", self.keep_m, cell_m..=FARTHEST_CELLS * cell_m)?;
         require("load_m", self.load_m, 0.0..=self.keep_m - cell_m)?;
         require("plants_per_step", self.plants_per_step as f32, 1.0..=1e5)?;
@@ -79,7 +79,26 @@ pub struct Orders {
     pub drop: Vec<IVec2>,
 }
 
-/// Decides which cells are to be planted and dropped as viewers move.
+/// Cells that are there already.
+pub trait CellSet {
+    /// Whether a cell is there.
+    fn contains(&self, cell: IVec2) -> bool;
+    /// Visits all that are there, in an order of their own.
+    fn visit(&self, visit: impl FnMut(IVec2));
+}
+
+impl CellSet for CellStore {
+    fn contains(&self, cell: IVec2) -> bool {
+        Self::contains(self, cell)
+    }
+
+    fn visit(&self, visit: impl FnMut(IVec2)) {
+        self.iter().map(|(cell, _)| cell).for_each(visit);
+    }
+}
+
+/// Decides which cells are to be planted and dropped as viewers move. What "planted" means is its owner's affair: packed
+/// into a store, raised as trees, drawn as blocks.
 #[derive(Clone, Debug)]
 pub struct CellStream {
     settings: StreamSettings,
@@ -117,18 +136,18 @@ impl CellStream {
         })
     }
 
-    /// Follows the viewers for a step, and fills `orders`. The caller removes what is to be dropped from `store` before the
+    /// Follows the viewers for a step, and fills `orders`. The caller removes what is to be dropped from `there` before the
     /// next step. Without viewers, or with one whose eye is nowhere, everything stays as it is.
-    pub fn step(&mut self, viewpoints: &[Viewpoint], store: &CellStore, orders: &mut Orders) {
+    pub fn step(&mut self, viewpoints: &[Viewpoint], there: &impl CellSet, orders: &mut Orders) {
         orders.plant.clear();
         orders.drop.clear();
         if viewpoints.is_empty() || viewpoints.iter().any(|viewpoint| !viewpoint.eye_m.is_finite()) {
             return;
         }
         if self.has_moved(viewpoints) {
-            self.follow(viewpoints, store);
+            self.follow(viewpoints, there);
         }
-        self.order(viewpoints, store, &mut orders.plant);
+        self.order(viewpoints, there, &mut orders.plant);
         while orders.drop.len() < self.settings.drops_per_step as usize
             && let Some(cell) = self.leaving.pop()
         {
@@ -138,12 +157,17 @@ impl CellStream {
 
     /// Puts an ordered cell into the store, unless everyone has gone away from it meanwhile. Tells whether it did.
     pub fn deliver(&mut self, cell: IVec2, content: Cell, store: &mut CellStore) -> bool {
-        self.ordered.remove(&(cell.y, cell.x));
-        let kept = self.is_in(cell, &self.keep);
+        let kept = self.fulfil(cell);
         if kept {
             store.insert(cell, content);
         }
         kept
+    }
+
+    /// Notes that an order is fulfilled. Tells whether anyone still wants it; if not, the caller throws it away.
+    pub fn fulfil(&mut self, cell: IVec2) -> bool {
+        self.ordered.remove(&(cell.y, cell.x));
+        self.is_in(cell, &self.keep)
     }
 
     /// Takes an order back that will not be fulfilled; the cell waits again if it is still wanted.
@@ -151,6 +175,11 @@ impl CellStream {
         if self.ordered.remove(&(cell.y, cell.x)) && self.is_in(cell, &self.load) {
             self.waiting.push((0.0, cell));
         }
+    }
+
+    /// Whether nobody waits for anything: from where the viewers are, all is there that is wanted.
+    pub fn is_complete(&self) -> bool {
+        !self.anchors.is_empty() && self.waiting.is_empty() && self.ordered.is_empty()
     }
 
     /// Number of cells that wait to be ordered.
@@ -173,11 +202,11 @@ impl CellStream {
     }
 
     /// Walks the crescents by which the viewers' discs have changed.
-    fn follow(&mut self, viewpoints: &[Viewpoint], store: &CellStore) {
+    fn follow(&mut self, viewpoints: &[Viewpoint], there: &impl CellSet) {
         let first = self.anchors.is_empty();
-        let Some(bounds) = self.bounds else { return };
         self.anchors.clear();
         self.anchors.extend(viewpoints.iter().map(|viewpoint| viewpoint.eye_m.xz()));
+        let Some(bounds) = self.bounds else { return };
         let load = self.discs(self.settings.load_m);
         let keep = self.discs(self.settings.keep_m);
         let cell_m = f64::from(self.cell_m);
@@ -186,15 +215,15 @@ impl CellStream {
         self.waiting.retain(|(_, cell)| is_in(*cell, &load));
         visit_difference(&load, &self.load, cell_m, bounds, |row, first, last| {
             let cells = (first..=last).map(|column| IVec2::new(column, row));
-            self.waiting.extend(cells.filter(|&cell| !store.contains(cell)).map(|cell| (0.0, cell)));
+            self.waiting.extend(cells.filter(|&cell| !there.contains(cell)).map(|cell| (0.0, cell)));
         });
         self.leaving.retain(|cell| !is_in(*cell, &keep));
         if first {
-            self.leaving.extend(store.iter().map(|(cell, _)| cell).filter(|cell| !is_in(*cell, &keep)));
+            there.visit(|cell| self.leaving.extend((!is_in(cell, &keep)).then_some(cell)));
         }
         visit_difference(&self.keep, &keep, cell_m, bounds, |row, first, last| {
             let cells = (first..=last).map(|column| IVec2::new(column, row));
-            self.leaving.extend(cells.filter(|&cell| store.contains(cell)));
+            self.leaving.extend(cells.filter(|&cell| there.contains(cell)));
         });
         (self.load, self.keep) = (load, keep);
     }
@@ -206,7 +235,7 @@ impl CellStream {
     }
 
     /// Takes the most urgent cells out of the queue.
-    fn order(&mut self, viewpoints: &[Viewpoint], store: &CellStore, plant: &mut Vec<IVec2>) {
+    fn order(&mut self, viewpoints: &[Viewpoint], there: &impl CellSet, plant: &mut Vec<IVec2>) {
         let room = (self.settings.most_ordered as usize).saturating_sub(self.ordered.len());
         let wanted = room.min(self.settings.plants_per_step as usize);
         if wanted == 0 || self.waiting.is_empty() {
@@ -229,7 +258,7 @@ impl CellStream {
         while plant.len() < wanted
             && let Some((_, cell)) = self.waiting.pop()
         {
-            if !store.contains(cell) && self.ordered.insert((cell.y, cell.x)) {
+            if !there.contains(cell) && self.ordered.insert((cell.y, cell.x)) {
                 plant.push(cell);
             }
         }

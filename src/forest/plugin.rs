@@ -1,9 +1,10 @@
 //! Registers forests.
 
 use super::{
+    cells::{begin_forests, plant_cells},
     components::{Forest, ForestSettings},
     loader::ForestLoader,
-    stream::{begin_forests, plant_cells, raise_trees},
+    near::raise_trees,
 };
 use crate::{scatter::ForestPlan, schedule::WindwoodSystems, tree::TreePlugin, viewpoint::give_cameras_viewpoints};
 use bevy::prelude::*;

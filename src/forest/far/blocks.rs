@@ -5,8 +5,10 @@ use super::{
     mesh::{FarTree, block_mesh},
 };
 use crate::{
-    forest::stream::{ForestCells, distance_to_square_m},
+    cells::{CellSet, CellStream, Orders, StreamSettings, Viewpoint},
+    forest::cells::{ForestCells, reaching},
     scatter::Planted,
+    setting::SettingError,
     sway::DrawPath,
     tree::growth::age::Age,
     viewpoint::Viewpoints,
@@ -21,23 +23,34 @@ use bevy::{
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
 };
 
-/// Cells along a side of a block.
-const BLOCK_CELLS: i32 = 4;
-/// As for cells: who walks to and fro makes nobody plant and clear.
-const HYSTERESIS: f32 = 1.1;
+/// Cells along a side of a block, at least.
+const LEAST_CELLS: i32 = 4;
+/// No more blocks than this from a viewer to the border: a wide view has larger blocks, and not more draws.
+const BLOCKS_TO_BORDER: f32 = 20.0;
 
 /// The blocks of a [`Forest`](crate::forest::Forest), those of its trees that are no entities.
 #[derive(Component)]
 pub struct FarBlocks {
     /// The forest's generation that they are of.
     generation: u64,
-    blocks: HashMap<IVec2, Vec<Entity>>,
+    /// Cells along a side of a block: a power of two.
+    cells: i32,
+    stream: CellStream,
+    orders: Orders,
     planting: Vec<(IVec2, Task<Vec<Drawn>>)>,
-    /// Blocks that are wanted and not there, the nearest last.
-    queue: Vec<IVec2>,
-    eyes: Vec<Vec2>,
-    looked_from: Vec<Vec2>,
+    blocks: Blocks,
+}
+
+/// The blocks that are there.
+#[derive(Default)]
+struct Blocks(HashMap<IVec2, Block>);
+
+#[derive(Default)]
+struct Block {
+    /// One mesh a species.
+    meshes: Vec<Entity>,
     trees: usize,
+    bytes: usize,
 }
 
 /// The trees of one species in a block.
@@ -52,29 +65,62 @@ struct Drawn {
 #[derive(Component)]
 pub(super) struct FarBlock;
 
+impl CellSet for Blocks {
+    fn contains(&self, block: IVec2) -> bool {
+        self.0.contains_key(&block)
+    }
+
+    fn visit(&self, visit: impl FnMut(IVec2)) {
+        self.0.keys().copied().for_each(visit);
+    }
+}
+
 impl FarBlocks {
-    fn new(generation: u64) -> Self {
-        Self {
-            generation,
-            blocks: HashMap::default(),
-            planting: Vec::new(),
-            queue: Vec::new(),
-            eyes: Vec::new(),
-            looked_from: Vec::new(),
-            trees: 0,
+    fn new(forest: &ForestCells) -> Result<Self, SettingError> {
+        let (planter, settings) = (forest.planter(), forest.settings());
+        let mut cells = LEAST_CELLS;
+        while settings.far_to_m > BLOCKS_TO_BORDER * cells as f32 * planter.cell_m() && cells < 64 {
+            cells *= 2;
         }
+        let side_m = planter.cell_m() * cells as f32;
+        let at_once = settings.cells_at_once;
+        let stream = StreamSettings {
+            plants_per_step: at_once,
+            most_ordered: at_once,
+            drops_per_step: 4,
+            ..reaching(settings.far_to_m, side_m)
+        };
+        let bounds = planter.cells().map(|cell| cell.map(|cell| cell.div_euclid(IVec2::splat(cells))));
+        Ok(Self {
+            generation: forest.generation(),
+            cells,
+            stream: CellStream::new(stream, side_m, bounds)?,
+            orders: Orders::default(),
+            planting: Vec::new(),
+            blocks: Blocks::default(),
+        })
     }
 
     /// Whether every block that is wanted from where the viewers are is drawn.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        !self.looked_from.is_empty() && self.queue.is_empty() && self.planting.is_empty()
+        self.stream.is_complete()
     }
 
-    /// Trees that have been made so far.
+    /// Trees that are drawn as cards, near ones among them.
     #[must_use]
     pub fn trees(&self) -> usize {
-        self.trees
+        self.blocks.0.values().map(|block| block.trees).sum()
+    }
+
+    /// What their meshes have on the graphics processor, bytes.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.blocks.0.values().map(|block| block.bytes).sum()
+    }
+
+    fn meshes(&self) -> impl Iterator<Item = Entity> {
+        self.blocks.0.values().flat_map(|block| block.meshes.iter().copied())
     }
 }
 
@@ -84,6 +130,7 @@ pub(super) fn stream_far(
     looks: Res<FarLooks>,
     path: Res<DrawPath>,
     viewpoints: Viewpoints,
+    mut places: Local<Vec<Viewpoint>>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut forests: Query<(Entity, &ForestCells, Option<&mut FarBlocks>)>,
 ) {
@@ -91,39 +138,58 @@ pub(super) fn stream_far(
         // Cards read the season from a table.
         return;
     }
+    viewpoints.fill(&mut places);
     for (entity, forest, blocks) in &mut forests {
-        let dressed = forest.species().iter().all(|species| looks.get(species.id()).is_some());
         let mut blocks = match blocks {
             Some(blocks) if blocks.generation == forest.generation() => blocks,
             older => {
-                if dressed && forest.far_to_m() > 0.0 {
-                    let meshes = older.iter().flat_map(|older| older.blocks.values().flatten());
-                    meshes.for_each(|mesh| commands.entity(*mesh).despawn());
-                    commands.entity(entity).insert(FarBlocks::new(forest.generation()));
+                let dressed = forest.species().iter().all(|species| looks.get(species.id()).is_some());
+                let wanted = forest.settings().far_to_m > 0.0;
+                if dressed || !wanted {
+                    older.iter().flat_map(|older| older.meshes()).for_each(|mesh| commands.entity(mesh).despawn());
+                    begin(entity, forest, wanted, &mut commands);
                 }
                 continue;
             }
         };
         let blocks = &mut *blocks;
-        blocks.look(forest, &viewpoints, &mut commands);
         blocks.receive(entity, forest, &looks, *path, &mut commands, &mut meshes);
-        while blocks.planting.len() < forest.cells_at_once() {
-            let Some(block) = blocks.queue.pop() else { break };
-            blocks.planting.push((block, plant_block(block, forest, &looks)));
+        blocks.stream.step(&places, &blocks.blocks, &mut blocks.orders);
+        for gone in blocks.orders.drop.iter().filter_map(|block| blocks.blocks.0.remove(block)) {
+            gone.meshes.into_iter().for_each(|mesh| commands.entity(mesh).despawn());
+        }
+        for &block in &blocks.orders.plant {
+            blocks.planting.push((block, plant_block(block, blocks.cells, forest, &looks)));
         }
     }
 }
 
-fn plant_block(block: IVec2, forest: &ForestCells, looks: &FarLooks) -> Task<Vec<Drawn>> {
+fn begin(entity: Entity, forest: &ForestCells, wanted: bool, commands: &mut Commands) {
+    let mut forest_entity = commands.entity(entity);
+    match FarBlocks::new(forest) {
+        Ok(blocks) if wanted => {
+            forest_entity.insert(blocks);
+        }
+        Ok(_) => {
+            forest_entity.try_remove::<FarBlocks>();
+        }
+        Err(error) => {
+            warn!("forest: {error}; there are no far trees");
+            forest_entity.try_remove::<FarBlocks>();
+        }
+    }
+}
+
+fn plant_block(block: IVec2, cells: i32, forest: &ForestCells, looks: &FarLooks) -> Task<Vec<Drawn>> {
     let (planter, ground) = (forest.shared_planter(), forest.ground());
     let shapes: Vec<(Age, f32)> =
         forest.species().iter().filter_map(|id| looks.get(id.id())).map(|look| (look.age, look.reach_m)).collect();
     AsyncComputeTaskPool::get().spawn(async move {
-        let corner = planter.corner_m(block * BLOCK_CELLS).as_vec2();
+        let corner = planter.corner_m(block * cells).as_vec2();
         let mut trees: Vec<Vec<FarTree>> = vec![Vec::new(); shapes.len()];
         let mut planted = Vec::new();
-        for cell in (0..BLOCK_CELLS * BLOCK_CELLS).map(|cell| IVec2::new(cell % BLOCK_CELLS, cell / BLOCK_CELLS)) {
-            planter.plant(block * BLOCK_CELLS + cell, &ground, &mut planted);
+        for cell in (0..cells * cells).map(|cell| IVec2::new(cell % cells, cell / cells)) {
+            planter.plant(block * cells + cell, &ground, &mut planted);
             for plant in &planted {
                 let species = usize::from(plant.species);
                 let Some((age, _)) = shapes.get(species) else { continue };
@@ -149,51 +215,6 @@ fn far_tree(plant: &Planted, age: &Age, corner: Vec2) -> FarTree {
 }
 
 impl FarBlocks {
-    /// Looks again when a viewer has moved by a quarter of a block.
-    fn look(&mut self, forest: &ForestCells, viewpoints: &Viewpoints, commands: &mut Commands) {
-        let planter = forest.planter();
-        let side_m = planter.cell_m() * BLOCK_CELLS as f32;
-        self.eyes.clear();
-        self.eyes.extend(viewpoints.iter().map(Vec3::xz));
-        let rests = |(now, then): (&Vec2, &Vec2)| now.distance(*then) < 0.25 * side_m;
-        let nobody = self.eyes.is_empty();
-        if nobody || self.eyes.len() == self.looked_from.len() && self.eyes.iter().zip(&self.looked_from).all(rests) {
-            return;
-        }
-        self.looked_from.clone_from(&self.eyes);
-        let eyes = std::mem::take(&mut self.eyes);
-        let distance_m =
-            |block: IVec2| distance_to_square_m(planter.corner_m(block * BLOCK_CELLS).as_vec2(), side_m, &eyes);
-        let far_m = forest.far_to_m();
-        let is_near = |block: &IVec2| distance_m(*block) <= HYSTERESIS * far_m;
-        self.planting.retain(|(block, _)| is_near(block));
-        self.blocks.retain(|block, meshes| {
-            let stays = is_near(block);
-            if !stays {
-                meshes.iter().for_each(|mesh| commands.entity(*mesh).despawn());
-            }
-            stays
-        });
-        self.queue.clear();
-        let Some([least, greatest]) = planter.cells() else { return };
-        let of_cell = |cell: IVec2| cell.div_euclid(IVec2::splat(BLOCK_CELLS));
-        let (least, greatest) = (of_cell(least), of_cell(greatest));
-        for eye in &eyes {
-            let (from, to) =
-                (of_cell(planter.cell_at(eye - far_m)).max(least), of_cell(planter.cell_at(eye + far_m)).min(greatest));
-            for block in (from.y..=to.y).flat_map(|row| (from.x..=to.x).map(move |column| IVec2::new(column, row))) {
-                let is_there =
-                    self.blocks.contains_key(&block) || self.planting.iter().any(|(other, _)| *other == block);
-                if !is_there && distance_m(block) <= far_m {
-                    self.queue.push(block);
-                }
-            }
-        }
-        self.queue.sort_by_cached_key(|block| (std::cmp::Reverse(distance_m(*block) as u32), block.x, block.y));
-        self.queue.dedup();
-        self.eyes = eyes;
-    }
-
     /// Takes over blocks that have been planted.
     fn receive(
         &mut self,
@@ -204,15 +225,19 @@ impl FarBlocks {
         commands: &mut Commands,
         meshes: &mut Assets<Mesh>,
     ) {
-        let Self { planting, blocks, trees, .. } = self;
-        planting.retain_mut(|(block, task)| {
+        let Self { planting, blocks, stream, cells, .. } = self;
+        planting.retain_mut(|(place, task)| {
             let Some(drawn) = block_on(poll_once(task)) else { return true };
-            let corner = forest.planter().corner_m(*block * BLOCK_CELLS).as_vec2();
-            let mut entities = Vec::with_capacity(drawn.len());
-            for Drawn { species, mesh, bounds, trees: count } in drawn {
+            if !stream.fulfil(*place) {
+                return false;
+            }
+            let corner = forest.planter().corner_m(*place * *cells).as_vec2();
+            let mut block = Block::default();
+            for Drawn { species, mesh, bounds, trees } in drawn {
                 let Some(look) = looks.get(forest.species()[species].id()) else { continue };
-                *trees += count;
-                let mut mesh = commands.spawn((
+                block.trees += trees;
+                block.bytes += mesh.get_vertex_buffer_size() + mesh.get_index_buffer_bytes().map_or(0, <[u8]>::len);
+                let mut spawned = commands.spawn((
                     FarBlock,
                     ChildOf(entity),
                     Transform::from_xyz(corner.x, 0.0, corner.y),
@@ -223,11 +248,11 @@ impl FarBlocks {
                     NoAutoAabb,
                 ));
                 if path.culls_on_gpu {
-                    mesh.insert(NoCpuCulling);
+                    spawned.insert(NoCpuCulling);
                 }
-                entities.push(mesh.id());
+                block.meshes.push(spawned.id());
             }
-            blocks.insert(*block, entities);
+            blocks.0.insert(*place, block);
             false
         });
     }

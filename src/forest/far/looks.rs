@@ -5,7 +5,7 @@ use super::{
     near::NearCells,
 };
 use crate::{
-    forest::stream::ForestCells,
+    forest::cells::ForestCells,
     lod::{LevelSettings, Scene, ViewAtlas},
     sway::StandTables,
     tree::{Species, TreeModel, growth::age::Age, painting::paint},

@@ -1,6 +1,6 @@
 //! Which cells' trees stand near, as the shader reads it: a square of bits about the viewer.
 
-use crate::forest::stream::ForestCells;
+use crate::{forest::cells::ForestCells, viewpoint::Viewpoints};
 use bevy::{asset::RenderAssetUsages, prelude::*, render::storage::ShaderBuffer};
 
 /// Cells along a side of the square: at 64 m a cell, a kilometre to each side.
@@ -40,6 +40,7 @@ fn square(centre: IVec2, cell_m: f32, cells: impl Iterator<Item = IVec2>) -> [u3
 pub(super) fn tell_near_cells(
     mut near: ResMut<NearCells>,
     mut buffers: ResMut<Assets<ShaderBuffer>>,
+    viewpoints: Viewpoints,
     mut forests: Query<&mut ForestCells>,
     children: Query<&Children>,
     dressed: Query<(), With<Mesh3d>>,
@@ -47,9 +48,9 @@ pub(super) fn tell_near_cells(
     let Some(mut forest) = forests.iter_mut().next() else { return };
     let is_dressed =
         |cell: Entity| children.get(cell).is_ok_and(|trees| trees.iter().all(|tree| dressed.contains(tree)));
-    forest.bypass_change_detection().note_dressed(is_dressed);
-    let Some(centre) = forest.centre() else { return };
-    let words = square(centre, forest.planter().cell_m(), forest.dressed());
+    forest.bypass_change_detection().near.note_dressed(is_dressed);
+    let Some(centre) = viewpoints.iter().next().map(|eye| forest.planter().cell_at(eye.xz())) else { return };
+    let words = square(centre, forest.planter().cell_m(), forest.near.dressed());
     if words == near.words {
         return;
     }

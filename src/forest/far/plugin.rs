@@ -7,7 +7,7 @@ use super::{
     near::{NearCells, tell_near_cells},
 };
 use crate::{
-    forest::stream::plant_cells,
+    forest::cells::plant_cells,
     schedule::WindwoodSystems,
     sway::{DrawPath, StandTables},
 };

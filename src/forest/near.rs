@@ -1,0 +1,189 @@
+//! Trees near the viewers: cells whose plants are entities.
+
+use super::{
+    cells::{ForestCells, reaching},
+    components::{ForestCell, ForestSettings},
+};
+use crate::{
+    cells::{CellSet, CellStream, Orders, StreamSettings, Viewpoint},
+    scatter::Planted,
+    setting::SettingError,
+    tree::{Species, Tree},
+    viewpoint::Viewpoints,
+};
+use bevy::{
+    platform::collections::HashMap,
+    prelude::*,
+    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+};
+
+/// The near cells of a forest.
+pub(super) struct NearTrees {
+    stream: CellStream,
+    orders: Orders,
+    planting: Vec<(IVec2, Task<Vec<Planted>>)>,
+    cells: NearCells,
+    /// Cells whose trees are still to come, the first first.
+    bare: Vec<IVec2>,
+}
+
+/// The cells that are there.
+#[derive(Default)]
+struct NearCells(HashMap<IVec2, NearCell>);
+
+struct NearCell {
+    entity: Entity,
+    planted: Vec<Planted>,
+    /// Plants that have become trees.
+    raised: usize,
+    /// Whether all of them are drawn.
+    dressed: bool,
+}
+
+impl CellSet for NearCells {
+    fn contains(&self, cell: IVec2) -> bool {
+        self.0.contains_key(&cell)
+    }
+
+    fn visit(&self, visit: impl FnMut(IVec2)) {
+        self.0.keys().copied().for_each(visit);
+    }
+}
+
+impl NearTrees {
+    pub fn new(settings: &ForestSettings, cell_m: f32, bounds: Option<[IVec2; 2]>) -> Result<Self, SettingError> {
+        let at_once = settings.cells_at_once;
+        // To clear a cell takes as long as to raise one, and nobody waits for it: one a frame.
+        let stream = StreamSettings {
+            plants_per_step: at_once,
+            most_ordered: at_once,
+            drops_per_step: 1,
+            ..reaching(settings.trees_to_m, cell_m)
+        };
+        Ok(Self {
+            stream: CellStream::new(stream, cell_m, bounds)?,
+            orders: Orders::default(),
+            planting: Vec::new(),
+            cells: NearCells::default(),
+            bare: Vec::new(),
+        })
+    }
+
+    pub fn is_complete(&self) -> bool {
+        self.stream.is_complete() && self.bare.is_empty()
+    }
+
+    pub fn entities(&self) -> impl Iterator<Item = Entity> {
+        self.cells.0.values().map(|cell| cell.entity)
+    }
+
+    /// Every near cell and its entity.
+    pub fn iter(&self) -> impl Iterator<Item = (IVec2, Entity)> {
+        self.cells.0.iter().map(|(cell, there)| (*cell, there.entity))
+    }
+
+    /// Notes those cells all of whose trees have come and are drawn, as `is_dressed` says.
+    #[cfg(feature = "render")]
+    pub fn note_dressed(&mut self, is_dressed: impl Fn(Entity) -> bool) {
+        for cell in self.cells.0.values_mut().filter(|cell| !cell.dressed && cell.planted.is_empty()) {
+            cell.dressed = is_dressed(cell.entity);
+        }
+    }
+
+    /// Cells all of whose trees are drawn.
+    #[cfg(feature = "render")]
+    pub fn dressed(&self) -> impl Iterator<Item = IVec2> {
+        self.cells.0.iter().filter(|(_, cell)| cell.dressed).map(|(cell, _)| *cell)
+    }
+
+    /// Takes over cells that have been planted.
+    fn receive(&mut self, forest: Entity, commands: &mut Commands) {
+        let Self { planting, cells, bare, stream, .. } = self;
+        planting.retain_mut(|(cell, task)| {
+            let Some(planted) = block_on(poll_once(task)) else { return true };
+            if !stream.fulfil(*cell) {
+                return false;
+            }
+            let entity =
+                commands.spawn((ForestCell(*cell), ChildOf(forest), Transform::default(), Visibility::default()));
+            if !planted.is_empty() {
+                bare.push(*cell);
+            }
+            let dressed = planted.is_empty();
+            cells.0.insert(*cell, NearCell { entity: entity.id(), dressed, planted, raised: 0 });
+            false
+        });
+    }
+
+    /// Clears what nobody is near to any more.
+    fn clear(&mut self, commands: &mut Commands) {
+        for cell in &self.orders.drop {
+            if let Some(there) = self.cells.0.remove(cell) {
+                commands.entity(there.entity).despawn();
+                self.bare.retain(|bare| bare != cell);
+            }
+        }
+    }
+
+    /// Turns plants into trees, as many as a frame may.
+    fn raise(&mut self, most: usize, species: &[Handle<Species>], commands: &mut Commands) {
+        let mut left = most;
+        while let Some(cell) = self.bare.first().and_then(|cell| self.cells.0.get_mut(cell)).filter(|_| left > 0) {
+            let batch = left.min(cell.planted.len() - cell.raised);
+            commands.entity(cell.entity).with_children(|parent| {
+                for plant in &cell.planted[cell.raised..cell.raised + batch] {
+                    parent.spawn(tree(plant, species));
+                }
+            });
+            (cell.raised, left) = (cell.raised + batch, left - batch);
+            if cell.raised == cell.planted.len() {
+                cell.planted = Vec::new();
+                cell.raised = 0;
+                self.bare.remove(0);
+            }
+        }
+    }
+}
+
+/// Keeps the cells near the viewers raised: trees come nearest first, and go one cell a frame.
+pub(super) fn raise_trees(
+    mut commands: Commands,
+    viewpoints: Viewpoints,
+    mut places: Local<Vec<Viewpoint>>,
+    mut forests: Query<(Entity, &mut ForestCells)>,
+) {
+    viewpoints.fill(&mut places);
+    for (entity, mut forest) in &mut forests {
+        let (planter, ground) = (forest.shared_planter(), forest.ground());
+        let most = forest.settings().trees_per_frame as usize;
+        let (near, species) = forest.near_and_species();
+        near.receive(entity, &mut commands);
+        near.stream.step(&places, &near.cells, &mut near.orders);
+        near.clear(&mut commands);
+        for &cell in &near.orders.plant {
+            let (planter, ground) = (planter.clone(), ground.clone());
+            let task = AsyncComputeTaskPool::get().spawn(async move {
+                let mut planted = Vec::new();
+                planter.plant(cell, &ground, &mut planted);
+                planted
+            });
+            near.planting.push((cell, task));
+        }
+        near.raise(most, species, &mut commands);
+    }
+}
+
+fn tree(plant: &Planted, species: &[Handle<Species>]) -> impl Bundle {
+    let place = Transform::from_translation(plant.position)
+        .with_rotation(Quat::from_rotation_y(plant.turn_rad))
+        .with_scale(Vec3::splat(plant.vigour));
+    let species = species[usize::from(plant.species)].clone();
+    (
+        Tree::new(species)
+            .with_age(plant.age_years)
+            .with_seed(u64::from(plant.seed))
+            .with_season(plant.season_days)
+            .with_tint(plant.tint),
+        place,
+    )
+}
