@@ -2,10 +2,8 @@
 
 use bevy::math::{IVec2, Mat4, Vec2, Vec3, primitives::ViewFrustum};
 use bevy_windwood::{
-    cells::{
-        Cell, CellLevels, CellStore, CellStream, Lens, LevelDistances, Orders, StreamSettings, Sun, TreeExtent, Trunk,
-        View, Viewpoint,
-    },
+    cells::{Cell, CellLevels, CellStore, CellStream, Orders, StreamSettings, Sun, TreeExtent, Trunk, View, Viewpoint},
+    lod::{Lens, LevelDistances},
     scatter::{
         ForestPlan, LevelGround, Planter,
         plan::{Area, Shape},

@@ -63,6 +63,8 @@ use bevy::app::{PluginGroup, PluginGroupBuilder};
 
 /// What a game needs: `use bevy_windwood::prelude::*;`.
 pub mod prelude {
+    #[cfg(feature = "render")]
+    pub use crate::sway::{LevelOfDetail, LevelStyle};
     pub use crate::{
         Viewpoint, WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
         fire::{Fire, FireLook, FireShape},

@@ -33,6 +33,8 @@ fn covered(settings: ForestSettings) -> usize {
     let world = app.world_mut();
     world.insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
     world.insert_resource(GlobalAmbientLight { brightness: 2000.0, ..default() });
+    // The trees themselves, and not their lower levels.
+    world.resource_mut::<LevelOfDetail>().style = LevelStyle::Full;
     let wants_far = settings.far_to_m > 0.0;
     world.spawn((Forest::new(plan), settings));
     world.spawn((

@@ -55,6 +55,8 @@ fn look_from(app: &mut App, viewer: Entity, place: Vec2) {
         app.update();
         let world = app.world_mut();
         if world.query::<&ForestCells>().iter(world).all(ForestCells::is_complete) {
+            // What nobody is near to any more goes, one cell a frame.
+            (0..100).for_each(|_| app.update());
             return;
         }
         std::thread::sleep(std::time::Duration::from_millis(1));

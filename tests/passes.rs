@@ -45,6 +45,8 @@ fn main_pass_prepasses_and_shadows_all_compile() {
         .pipelines()
         .filter_map(|pipeline| match &pipeline.state {
             CachedPipelineState::Err(error) => Some(error.to_string()),
+            // A shader that imports what is not there waits without a word.
+            CachedPipelineState::Queued => Some(format!("{} waits for ever", pipeline.id())),
             _ => None,
         })
         .collect();

@@ -7,7 +7,7 @@
 //!
 //! - [`CellStore::insert`], [`get`](CellStore::get) and so on: the cells and their plants (`store`, `cell`, `block`).
 //! - [`CellStore::see`]: the cells in view, and those whose shadows fall into view (`view`).
-//! - [`LevelDistances`], [`CellLevels`]: which level of detail a cell has, without flicker (`level`).
+//! - [`CellLevels`]: which level of detail a cell has, without flicker (`level`).
 //! - [`CellStream`]: which cells to plant, keep and drop about the viewers (`stream`).
 //! - [`CellStore::nearest`], [`within`](CellStore::within), [`cast`](CellStore::cast): stems by place, and the first trunk
 //!   on a ray (`query`).
@@ -24,7 +24,7 @@ mod stream;
 mod view;
 
 pub use cell::Cell;
-pub use level::{CellLevels, Lens, Level, LevelDistances, LevelSwitches};
+pub use level::CellLevels;
 pub use query::{Found, RayHit, Trunk};
 pub use store::CellStore;
 pub use stream::{CellSet, CellStream, Orders, StreamSettings, Viewpoint};

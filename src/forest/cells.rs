@@ -112,8 +112,9 @@ impl ForestCells {
         self.ground.clone()
     }
 
-    pub(super) fn near_and_species(&mut self) -> (&mut NearTrees, &[Handle<Species>]) {
-        (&mut self.near, &self.species)
+    /// Near trees, and what they are made from.
+    pub(super) fn parts(&mut self) -> (&mut NearTrees, &[Handle<Species>], &ForestSettings) {
+        (&mut self.near, &self.species, &self.settings)
     }
 
     /// Grows whenever the forest begins anew.

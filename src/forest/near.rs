@@ -77,11 +77,6 @@ impl NearTrees {
         self.cells.0.values().map(|cell| cell.entity)
     }
 
-    /// Every near cell and its entity.
-    pub fn iter(&self) -> impl Iterator<Item = (IVec2, Entity)> {
-        self.cells.0.iter().map(|(cell, there)| (*cell, there.entity))
-    }
-
     /// Notes those cells all of whose trees have come and are drawn, as `is_dressed` says.
     #[cfg(feature = "render")]
     pub fn note_dressed(&mut self, is_dressed: impl Fn(Entity) -> bool) {
@@ -126,13 +121,20 @@ impl NearTrees {
     }
 
     /// Turns plants into trees, as many as a frame may.
-    fn raise(&mut self, most: usize, species: &[Handle<Species>], commands: &mut Commands) {
-        let mut left = most;
+    fn raise(&mut self, settings: &ForestSettings, species: &[Handle<Species>], commands: &mut Commands) {
+        #[cfg(feature = "render")]
+        let has_cards = settings.far_to_m > 0.0;
+        let mut left = settings.trees_per_frame as usize;
         while let Some(cell) = self.bare.first().and_then(|cell| self.cells.0.get_mut(cell)).filter(|_| left > 0) {
             let batch = left.min(cell.planted.len() - cell.raised);
             commands.entity(cell.entity).with_children(|parent| {
                 for plant in &cell.planted[cell.raised..cell.raised + batch] {
-                    parent.spawn(tree(plant, species));
+                    #[cfg_attr(not(feature = "render"), expect(unused_variables, unused_mut))]
+                    let mut tree = parent.spawn(tree(plant, species));
+                    #[cfg(feature = "render")]
+                    if has_cards {
+                        tree.insert(crate::sway::CardBehind);
+                    }
                 }
             });
             (cell.raised, left) = (cell.raised + batch, left - batch);
@@ -155,8 +157,7 @@ pub(super) fn raise_trees(
     viewpoints.fill(&mut places);
     for (entity, mut forest) in &mut forests {
         let (planter, ground) = (forest.shared_planter(), forest.ground());
-        let most = forest.settings().trees_per_frame as usize;
-        let (near, species) = forest.near_and_species();
+        let (near, species, settings) = forest.parts();
         near.receive(entity, &mut commands);
         near.stream.step(&places, &near.cells, &mut near.orders);
         near.clear(&mut commands);
@@ -169,7 +170,7 @@ pub(super) fn raise_trees(
             });
             near.planting.push((cell, task));
         }
-        near.raise(most, species, &mut commands);
+        near.raise(settings, species, &mut commands);
     }
 }
 

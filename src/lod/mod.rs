@@ -17,6 +17,7 @@
 mod chart;
 pub mod cylinder;
 mod film;
+pub mod level;
 mod paint;
 pub mod plain;
 pub mod profile;
@@ -32,6 +33,7 @@ mod tests;
 
 pub use chart::{ViewWeight, normal_of, place_of_normal, view_direction, view_place, views_towards};
 pub use cylinder::{CylinderLevel, EnvelopeVertices};
+pub use level::{Lens, Level, LevelDistances, LevelSwitches};
 pub use plain::PlainVertices;
 pub use profile::CrownProfile;
 pub use scene::Scene;

@@ -1,18 +1,17 @@
-//! Draws trees: one draw for the wood and one for the leaves of a tree, all trees of a model in one batch.
+//! Draws trees: one draw for the wood and one for the leaves of a tree, all trees of a model and a level in one batch.
 //!
-//! Nothing here runs per tree and frame. A tree is dressed once, when it gets its model; after that the frame's clock is
-//! the only thing that changes.
+//! Nothing here runs for a tree that nobody comes nearer to. A tree is dressed when it gets its model, and again when it
+//! wears another level; between, the frame's clock is the only thing that changes.
 
 use super::{
-    looks::{Outfit, SpeciesLooks, VariantLook},
-    material::TAG_TREE_BITS,
+    detail::{Levels, Sight},
+    looks::{Garment, SpeciesDressed, VariantLook, Wardrobe},
     stand::{Stand, Standing},
 };
 use crate::tree::{Grown, Species, Tree};
 use bevy::{
     camera::visibility::{NoAutoAabb, NoCpuCulling},
     mesh::MeshTag,
-    platform::collections::HashMap,
     prelude::*,
 };
 
@@ -34,33 +33,47 @@ pub struct DrawPath {
 #[require(Visibility)]
 pub struct Foliage;
 
-/// What the species look like, as far as they have been prepared.
-#[derive(Resource, Default)]
-pub(super) struct Wardrobe {
-    pub looks: HashMap<AssetId<Species>, SpeciesLooks>,
+/// A draw of the level that a tree fades into: a child that goes when the tree wears that level alone.
+#[derive(Component, Clone, Copy)]
+#[require(Visibility)]
+pub(super) struct Coming;
+
+/// A tree for which a card stands from [`CardRange`](super::detail::CardRange) on.
+#[derive(Component, Clone, Copy)]
+pub(crate) struct CardBehind;
+
+/// What a tree wears.
+#[derive(Component, Clone, Copy, Debug)]
+pub(super) struct Worn {
+    pub levels: Levels,
+    /// How many levels it has.
+    count: u8,
+    /// Its height while its scale is 1, m.
+    pub height_m: f32,
+    tint: u8,
 }
 
-/// Message: the looks of a species are there.
-#[derive(Message, Clone, Copy)]
-pub(super) struct SpeciesDressed(pub AssetId<Species>);
+/// Trees that change their level in a frame, at most; each takes some microseconds.
+const CHANGES_PER_FRAME: usize = 128;
 
 /// Puts the meshes and materials of its model on every tree that has got a new one.
 pub(super) fn dress_trees(
     mut commands: Commands,
     wardrobe: Res<Wardrobe>,
     path: Res<DrawPath>,
+    sight: Res<Sight>,
     mut stand: ResMut<Stand>,
     mut warned: Local<bool>,
     mut dressed: MessageReader<SpeciesDressed>,
-    trees: Query<(Entity, &Tree, &Grown, Option<&Children>)>,
+    places: TransformHelper,
+    trees: Query<(Entity, &Tree, &Grown, Option<&Children>, Has<CardBehind>)>,
     regrown: Query<Entity, Changed<Grown>>,
-    foliage: Query<Entity, With<Foliage>>,
+    draws: Query<(), Or<(With<Foliage>, With<Coming>)>>,
 ) {
     let renewed: Vec<AssetId<Species>> = dressed.read().map(|message| message.0).collect();
-    let mut dress = |(entity, tree, grown, children): (Entity, &Tree, &Grown, Option<&Children>)| {
-        let Some(looks) = wardrobe.looks.get(&tree.species.id()) else { return };
-        let Some(variant) = looks.variants.get(&grown.model.id()) else { return };
-        for old in children.into_iter().flatten().filter(|child| foliage.contains(**child)) {
+    let mut dress = |(entity, tree, grown, children, card_behind): (Entity, &Tree, &Grown, Option<&Children>, bool)| {
+        let Some(variant) = wardrobe.variant(tree.species.id(), grown.model.id()) else { return };
+        for old in children.into_iter().flatten().filter(|child| draws.contains(**child)) {
             commands.entity(*old).despawn();
         }
         let standing = if path.sways { stand.admit(grown.model.id(), path.pose_limit) } else { None };
@@ -68,21 +81,23 @@ pub(super) fn dress_trees(
             warn!("windwood: this device can pose {} beams at once; trees beyond that stand still", path.pose_limit);
             *warned = true;
         }
-        let tint = tree.tint_byte(grown.seed);
-        let tag = MeshTag(standing.map_or(0, |standing| standing.row) | tint << TAG_TREE_BITS);
+        let (scale, _, place) =
+            places.compute_global_transform(entity).unwrap_or_default().to_scale_rotation_translation();
+        let mut worn = Worn {
+            levels: Levels::default(),
+            count: variant.levels.len() as u8,
+            height_m: variant.height_m,
+            tint: tree.tint_byte(grown.seed) as u8,
+        };
+        worn.levels = worn.choose(&sight, place, scale.y, standing.is_some(), None);
         // The old row, if there is one, is given back when the component goes.
         let mut tree = commands.entity(entity);
-        tree.remove::<Standing>();
+        tree.remove::<Standing>().insert(worn);
         if let Some(standing) = standing {
             tree.insert(standing);
         }
-        let wood =
-            Draw { mesh: &variant.wood, outfit: &looks.bark, sways: standing.is_some(), tag: tag.clone(), variant };
-        wood.put_on(commands.entity(entity), *path);
-        if let Some(leaves) = &variant.leaves {
-            let leaves = Draw { mesh: leaves, outfit: &looks.foliage, sways: standing.is_some(), tag, variant };
-            leaves.put_on(commands.spawn((Foliage, ChildOf(entity), Transform::default())), *path);
-        }
+        let dress = Dress { tree: entity, variant, worn, standing, card_behind, path: *path };
+        dress.put_on(None, &mut commands);
     };
     if renewed.is_empty() {
         regrown.iter().filter_map(|entity| trees.get(entity).ok()).for_each(&mut dress);
@@ -92,24 +107,128 @@ pub(super) fn dress_trees(
     }
 }
 
-/// One draw of a tree.
-struct Draw<'a> {
-    mesh: &'a Handle<Mesh>,
-    outfit: &'a Outfit,
-    sways: bool,
-    tag: MeshTag,
-    variant: &'a VariantLook,
+/// Looks trees over when a viewer has moved, and changes the levels of those that come nearer or go farther.
+pub(super) fn choose_levels(
+    mut commands: Commands,
+    mut sight: ResMut<Sight>,
+    wardrobe: Res<Wardrobe>,
+    path: Res<DrawPath>,
+    mut trees: Query<(
+        Entity,
+        &Tree,
+        &Grown,
+        &GlobalTransform,
+        &mut Worn,
+        Option<&Standing>,
+        Option<&Children>,
+        Has<CardBehind>,
+    )>,
+    foliage: Query<(), (With<Foliage>, Without<Coming>)>,
+    coming: Query<(), With<Coming>>,
+) {
+    if !std::mem::take(&mut sight.bypass_change_detection().is_due) {
+        return;
+    }
+    let mut left = CHANGES_PER_FRAME;
+    for (entity, tree, grown, at, mut worn, standing, children, card_behind) in &mut trees {
+        let scale = at.affine().matrix3.y_axis.length();
+        let levels = worn.choose(&sight, at.translation(), scale, standing.is_some(), Some(worn.levels));
+        if levels == worn.levels {
+            continue;
+        }
+        let Some(variant) = wardrobe.variant(tree.species.id(), grown.model.id()) else { continue };
+        if left == 0 {
+            sight.bypass_change_detection().is_due = true;
+            return;
+        }
+        left -= 1;
+        let before = std::mem::replace(&mut worn.bypass_change_detection().levels, levels);
+        let mut children = children.into_iter().flatten().copied();
+        for gone in children.clone().filter(|child| coming.contains(*child)) {
+            commands.entity(gone).despawn();
+        }
+        let leaves = children.find(|child| foliage.contains(*child));
+        let dress = Dress { tree: entity, variant, worn: *worn, standing: standing.copied(), card_behind, path: *path };
+        dress.put_on(Some((before, leaves)), &mut commands);
+    }
 }
 
-impl Draw<'_> {
-    fn put_on(self, mut entity: EntityCommands, path: DrawPath) {
+impl Worn {
+    /// The levels at a distance; a tree whose material cannot fade wears one at a time.
+    fn choose(&self, sight: &Sight, place: Vec3, scale: f32, fades: bool, before: Option<Levels>) -> Levels {
+        let levels = sight.ladder.choose(sight.distance_m(place), self.height_m * scale, self.count, before);
+        if fades || !levels.both {
+            return levels;
+        }
+        let first = before.map_or(levels.first, |before| before.first.clamp(levels.first, levels.first + 1));
+        Levels { first, both: false }
+    }
+}
+
+/// How the level of a draw fades: bits of its tag.
+const FADES_OUT: u32 = 1 << 18;
+const FADES_IN: u32 = 1 << 19;
+const CARDS_BEHIND: u32 = 1 << 20;
+
+/// A tree and what it is to wear.
+struct Dress<'a> {
+    tree: Entity,
+    variant: &'a VariantLook,
+    worn: Worn,
+    standing: Option<Standing>,
+    card_behind: bool,
+    path: DrawPath,
+}
+
+impl Dress<'_> {
+    /// Puts the levels on: `before` is what the tree has worn, and the draw of its leaves.
+    fn put_on(&self, before: Option<(Levels, Option<Entity>)>, commands: &mut Commands) {
+        let Levels { first, both } = self.worn.levels;
+        let Some(level) = self.variant.levels.get(usize::from(first)) else { return };
+        let same = before.filter(|(before, _)| before.first == first).is_some();
+        let fading = if both { FADES_OUT } else { self.end_of(first) };
+        self.put(&level.wood, first, fading, same, commands.entity(self.tree));
+        match (&level.leaves, before.and_then(|(_, leaves)| leaves)) {
+            (Some(leaves), Some(entity)) => self.put(leaves, first, fading, same, commands.entity(entity)),
+            (Some(leaves), None) => self.put(leaves, first, fading, false, self.child(Foliage, commands)),
+            (None, Some(entity)) => commands.entity(entity).despawn(),
+            (None, None) => {}
+        }
+        let next = first + 1;
+        let Some(level) = self.variant.levels.get(usize::from(next)).filter(|_| both) else { return };
+        let fading = FADES_IN | self.end_of(next);
+        if !level.nested {
+            self.put(&level.wood, next, fading, false, self.child(Coming, commands));
+        }
+        if let Some(leaves) = &level.leaves {
+            self.put(leaves, next, fading, false, self.child((Foliage, Coming), commands));
+        }
+    }
+
+    /// What comes after a level that is worn alone.
+    fn end_of(&self, level: u8) -> u32 {
+        if self.card_behind && level + 1 == self.worn.count { CARDS_BEHIND } else { 0 }
+    }
+
+    fn child<'c>(&self, mark: impl Bundle, commands: &'c mut Commands) -> EntityCommands<'c> {
+        commands.spawn((mark, ChildOf(self.tree), Transform::default()))
+    }
+
+    /// One draw; of one that is the `same` as before only the tag changes.
+    fn put(&self, garment: &Garment, level: u8, fading: u32, same: bool, mut entity: EntityCommands) {
+        let fading = if garment.fades && self.standing.is_some() { fading } else { 0 };
+        let row = self.standing.map_or(0, |standing| standing.row);
+        entity.insert(MeshTag(row | u32::from(level) << 16 | fading | u32::from(self.worn.tint) << 24));
+        if same {
+            return;
+        }
         // The box holds every pose; the mesh's own would cull a tree that leans into the view.
-        entity.insert((Mesh3d(self.mesh.clone()), self.tag, self.variant.bounds, NoAutoAabb));
-        match &self.outfit.swaying {
-            Some(swaying) if self.sways => entity.insert(MeshMaterial3d(swaying.clone())),
-            _ => entity.insert(MeshMaterial3d(self.outfit.still.clone())),
+        entity.insert((Mesh3d(garment.mesh.clone()), self.variant.bounds, NoAutoAabb));
+        match &garment.outfit.swaying {
+            Some(swaying) if self.standing.is_some() => entity.insert(MeshMaterial3d(swaying.clone())),
+            _ => entity.insert(MeshMaterial3d(garment.outfit.still.clone())),
         };
-        if path.culls_on_gpu {
+        if self.path.culls_on_gpu {
             entity.insert(NoCpuCulling);
         }
     }

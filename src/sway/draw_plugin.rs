@@ -3,14 +3,15 @@
 use super::{
     compute,
     compute::{PoseJob, STORAGE_BUFFERS_NEEDED},
-    draw::{DrawPath, SpeciesDressed, Wardrobe, dress_trees},
-    looks::{Tailoring, finish_tailoring, start_tailoring},
+    detail::{CardRange, LevelOfDetail, Sight, look_about},
+    draw::{DrawPath, choose_levels, dress_trees},
+    looks::{SpeciesDressed, Tailoring, Wardrobe, finish_tailoring, start_tailoring},
     material::SwayMaterial,
     rows::POSE_BYTES,
     stand::{Stand, dismiss_tree, place_trees},
     upload::{StandBuffers, StandTables, upload_frame, upload_winds},
 };
-use crate::{schedule::WindwoodSystems, tree::receive_models};
+use crate::{schedule::WindwoodSystems, tree::receive_models, viewpoint::give_cameras_viewpoints};
 use bevy::{
     asset::embedded_asset,
     pbr::MaterialPlugin,
@@ -34,17 +35,23 @@ impl Plugin for SwayDrawPlugin {
         }
         load_shader_library!(app, "shaders/beam.wgsl");
         load_shader_library!(app, "shaders/leaf.wgsl");
+        load_shader_library!(app, "shaders/level.wgsl");
         load_shader_library!(app, "shaders/season.wgsl");
         embedded_asset!(app, "shaders/foliage.wgsl");
         embedded_asset!(app, "shaders/mask.wgsl");
         load_shader_library!(app, "shaders/wind.wgsl");
         embedded_asset!(app, "shaders/pose.wgsl");
         embedded_asset!(app, "shaders/sway.wgsl");
+        give_cameras_viewpoints(app);
         app.add_plugins((MaterialPlugin::<SwayMaterial>::default(), compute::plugin))
             .init_resource::<StandBuffers>()
             .init_resource::<StandTables>()
             .init_resource::<PoseJob>()
             .init_resource::<Stand>()
+            .init_resource::<LevelOfDetail>()
+            .init_resource::<Sight>()
+            .insert_resource(CardRange { from_m: None })
+            .register_type::<LevelOfDetail>()
             .init_resource::<Tailoring>()
             .init_resource::<Wardrobe>()
             .add_message::<SpeciesDressed>()
@@ -52,7 +59,7 @@ impl Plugin for SwayDrawPlugin {
             .configure_sets(PostUpdate, WindwoodSystems::Upload.after(TransformSystems::Propagate))
             .add_systems(
                 Update,
-                (start_tailoring.after(receive_models), finish_tailoring, dress_trees)
+                (look_about, start_tailoring.after(receive_models), finish_tailoring, choose_levels, dress_trees)
                     .chain()
                     .in_set(WindwoodSystems::Grow)
                     .run_if(resource_exists::<DrawPath>),

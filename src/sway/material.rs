@@ -22,9 +22,6 @@ pub const ATTRIBUTE_LEAF_AXIS: MeshVertexAttribute =
 pub const ATTRIBUTE_LEAF_ANCHOR: MeshVertexAttribute =
     MeshVertexAttribute::new("LeafAnchor", 0x4c41_4e43, VertexFormat::Float32x4);
 
-/// Bits of an instance's tag that hold its row in the table of trees; the rest is its tint.
-pub(super) const TAG_TREE_BITS: u32 = 24;
-
 /// A standard material whose vertices sway.
 pub type SwayMaterial = ExtendedMaterial<StandardMaterial, SwayExtension>;
 
@@ -169,7 +166,8 @@ impl MaterialExtension for SwayExtension {
         // The second coordinates carry the season of a leaf to its fragments.
         let own: &[&str] = if leaves { &["WINDWOOD_LEAVES", "VERTEX_UVS_B"] } else { &[] };
         define(descriptor, own);
-        define(descriptor, &["VERTEX_COLORS", "VERTEX_TANGENTS"]);
+        // The dither of levels takes the place, among the vertex stage's results, of that of Bevy's own ranges.
+        define(descriptor, &["VERTEX_COLORS", "VERTEX_TANGENTS", "VISIBILITY_RANGE_DITHER"]);
         Ok(())
     }
 }

@@ -3,7 +3,8 @@
 //! - `response` turns a wind field into tables, once per wind, off the frame.
 //! - `active` fades from the tables of one wind to those of the next.
 //! - `articulated` poses the trees that ask for it on the processor.
-//! - With the feature `render`, `draw` puts meshes and materials on trees and `stand` gives them rows in shared tables;
+//! - With the feature `render`, `looks` has the meshes (`cut`) and materials (`outfits`) of species made in the background,
+//!   `draw` puts them on trees, as many levels of detail as `detail` says, and `stand` gives trees rows in shared tables;
 //!   each frame `upload` writes the clock, `compute` poses all beams on the graphics processor (`shaders/pose.wgsl`), and
 //!   `shaders/sway.wgsl` carries every vertex: no work per tree and frame on the processor.
 
@@ -15,6 +16,10 @@ mod response;
 #[cfg(feature = "render")]
 mod compute;
 #[cfg(feature = "render")]
+mod cut;
+#[cfg(feature = "render")]
+mod detail;
+#[cfg(feature = "render")]
 mod draw;
 #[cfg(feature = "render")]
 mod draw_plugin;
@@ -22,6 +27,8 @@ mod draw_plugin;
 mod looks;
 #[cfg(feature = "render")]
 mod material;
+#[cfg(feature = "render")]
+mod outfits;
 #[cfg(feature = "render")]
 mod rows;
 #[cfg(feature = "render")]
@@ -35,9 +42,10 @@ pub use plugin::SwayPlugin;
 pub use response::{SwaySettings, WindResponse};
 
 #[cfg(feature = "render")]
-pub(crate) use material::SeasonUniform;
+pub(crate) use {detail::CardRange, draw::CardBehind, material::SeasonUniform};
 #[cfg(feature = "render")]
 pub use {
+    detail::{LevelOfDetail, LevelStyle},
     draw::{DrawPath, Foliage},
     draw_plugin::SwayDrawPlugin,
     upload::StandTables,

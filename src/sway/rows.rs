@@ -51,7 +51,13 @@ pub(super) struct FrameRow {
     pub tree_count: u32,
     /// Time of the year, 0..1.
     pub year: f32,
-    pub padding: [f32; 3],
+    /// Where levels 0, 1 and 2 of a tree end, per metre of its height.
+    pub level_ends: [f32; 3],
+    /// Nowhere nearer than this do cards stand for trees, m.
+    pub cards_from_m: f32,
+    /// Over this share of a distance, to either side, levels fade.
+    pub fade: f32,
+    pub padding: [f32; 2],
 }
 
 /// `TreeRow` of the shader: one tree. Without beams it is a row that nobody has.
@@ -64,8 +70,18 @@ pub(super) struct TreeRow {
     pub first_beam: u32,
     pub beam_count: u32,
     pub first_pose: u32,
-    /// How far it is ahead of the season, in years.
-    pub season_shift: f32,
+    /// See [`TreeRow::season_and_height`].
+    pub season_and_height: u32,
+}
+
+impl TreeRow {
+    /// How far it is ahead of the season, -0.5 to 0.5 years in steps of 8 minutes, and its height, m, to 256 m in steps of
+    /// 4 mm.
+    pub fn season_and_height(season_shift: f32, height_m: f32) -> u32 {
+        let season = (season_shift * 65_536.0 + 32_768.0).round().clamp(0.0, 65_535.0) as u32;
+        let height = (height_m * 256.0).round().clamp(0.0, 65_535.0) as u32;
+        season | height << 16
+    }
 }
 
 /// Size of a `BeamPose` of the shader: three vec4.
@@ -98,7 +114,15 @@ mod tests {
     #[test]
     fn rows_have_the_sizes_that_the_shader_strides_by() {
         assert_eq!(size_of::<BeamRow>(), 48);
-        assert_eq!(size_of::<FrameRow>(), 64);
+        assert_eq!(size_of::<FrameRow>(), 80);
         assert_eq!(size_of::<TreeRow>(), 48);
+    }
+
+    #[test]
+    fn season_and_height_share_a_word() {
+        let word = TreeRow::season_and_height(-0.25, 31.5);
+        assert_eq!(((word & 0xffff) as f32 - 32_768.0) / 65_536.0, -0.25);
+        assert_eq!((word >> 16) as f32 / 256.0, 31.5);
+        assert_eq!(TreeRow::season_and_height(f32::NAN, -3.0), 0);
     }
 }

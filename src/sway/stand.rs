@@ -3,7 +3,10 @@
 //! A stand of trees has one table of beams (those of each model once), one of trees, and one of poses (a range for each
 //! tree). Rows are written when a tree comes, moves or goes; nothing here runs for a tree that stands.
 
-use super::rows::{BeamRow, TreeRow};
+use super::{
+    draw::Worn,
+    rows::{BeamRow, TreeRow},
+};
 use crate::tree::{Tree, TreeModel};
 use bevy::{platform::collections::HashMap, prelude::*};
 
@@ -73,14 +76,14 @@ impl Stand {
         Some(Standing { row })
     }
 
-    /// Writes where a tree stands, and how far it is ahead of the season, years.
-    pub fn place(&mut self, standing: Standing, at: &GlobalTransform, season_shift: f32) {
+    /// Writes where a tree stands, how far it is ahead of the season, years, and its height while its scale is 1, m.
+    pub fn place(&mut self, standing: Standing, at: &GlobalTransform, season_shift: f32, height_m: f32) {
         let (scale, rotation, translation) = at.to_scale_rotation_translation();
         let Some(row) = self.rows.get_mut(standing.row as usize) else { return };
         row.rotation = rotation.to_array();
         row.position = translation.to_array();
         row.scale = scale.y.max(f32::MIN_POSITIVE);
-        row.season_shift = season_shift;
+        row.season_and_height = TreeRow::season_and_height(season_shift, height_m * row.scale);
         self.rows_changed = true;
     }
 
@@ -152,10 +155,13 @@ pub(super) fn dismiss_tree(removed: On<Remove, Standing>, trees: Query<&Standing
 /// Writes the places of trees that are new, were changed or have moved.
 pub(super) fn place_trees(
     mut stand: ResMut<Stand>,
-    trees: Query<(&Standing, &Tree, &GlobalTransform), Or<(Changed<GlobalTransform>, Changed<Tree>, Added<Standing>)>>,
+    trees: Query<
+        (&Standing, &Worn, &Tree, &GlobalTransform),
+        Or<(Changed<GlobalTransform>, Changed<Tree>, Added<Standing>)>,
+    >,
 ) {
-    for (standing, tree, at) in &trees {
-        stand.place(*standing, at, tree.season_shift());
+    for (standing, worn, tree, at) in &trees {
+        stand.place(*standing, at, tree.season_shift(), worn.height_m);
     }
 }
 

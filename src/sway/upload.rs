@@ -4,6 +4,7 @@
 use super::{
     active::{ActiveSway, leaf_clock_s, wrapped_time_s},
     compute::PoseJob,
+    detail::{CardRange, Sight},
     draw::DrawPath,
     material::SwayMaterial,
     response::WindResponse,
@@ -63,7 +64,7 @@ impl FromWorld for StandBuffers {
 /// The tables of all trees that sway and of the wind, for shaders of your own.
 ///
 /// To draw what rides on trees, import `bevy_windwood::beam`, which has the layouts and `carry`, and find a tree's row in
-/// the low 24 bits of its mesh tag. To read the wind, import `bevy_windwood::wind`, which has `velocity_at`, and bind
+/// the low 16 bits of its mesh tag. To read the wind, import `bevy_windwood::wind`, which has `velocity_at`, and bind
 /// `frame` at 103 and `winds` at 105 and 106 of the material's group.
 ///
 /// The resource counts as changed whenever a buffer has been replaced by one of another size: then touch the materials that
@@ -176,6 +177,8 @@ pub(super) fn upload_frame(
     sway: Res<ActiveSway>,
     clock: Res<WindClock>,
     season: Res<Season>,
+    sight: Res<Sight>,
+    cards: Res<CardRange>,
     mut stand: ResMut<Stand>,
     mut uploads: Uploads,
     mut job: ResMut<PoseJob>,
@@ -201,10 +204,16 @@ pub(super) fn upload_frame(
     shared.posed = Some((clock.time_s, blend));
     job.trees = stand.rows().len() as u32;
     job.most_beams = stand.most_beams();
-    let row = FrameRow { year: season.wrapped(), ..frame_row(&sway, &clock, shared, job.trees) };
+    let row = FrameRow {
+        year: season.wrapped(),
+        level_ends: sight.ladder.ends,
+        cards_from_m: cards.from_m(),
+        fade: sight.ladder.fade,
+        ..frame_row(&sway, &clock, shared, job.trees)
+    };
     let frame = shared.frame.clone();
     if let Some(mut buffer) = uploads.buffers.get_mut(&frame) {
-        // Extraction takes the bytes away, so a few are allocated anew each frame: 64, whatever the forest.
+        // Extraction takes the bytes away, so a few are allocated anew each frame: 80, whatever the forest.
         buffer.data = Some(bytemuck::bytes_of(&row).to_vec());
     }
 }

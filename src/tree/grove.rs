@@ -60,6 +60,12 @@ impl Grove {
         self.species.get(&id)
     }
 
+    /// Every species with every age that is baked.
+    #[cfg(feature = "render")]
+    pub(crate) fn stages(&self) -> impl Iterator<Item = (AssetId<Species>, i32)> + '_ {
+        self.species.iter().flat_map(|(id, entry)| entry.stages.keys().map(|step| (*id, *step)))
+    }
+
     /// Whether species are being baked.
     pub fn is_baking(&self) -> bool {
         !self.baking.is_empty()

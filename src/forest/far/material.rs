@@ -127,7 +127,7 @@ impl MaterialExtension for FarExtension {
                 .get_layout(&[Mesh::ATTRIBUTE_POSITION.at_shader_location(0), ATTRIBUTE_FAR.at_shader_location(8)])?,
         ];
         // Coordinates and colour carry the place on the tree and the direction to the eye to the fragments.
-        define(descriptor, &["VERTEX_UVS_A", "VERTEX_UVS_B", "VERTEX_COLORS"]);
+        define(descriptor, &["VERTEX_UVS_A", "VERTEX_UVS_B", "VERTEX_COLORS", "VISIBILITY_RANGE_DITHER"]);
         Ok(())
     }
 }

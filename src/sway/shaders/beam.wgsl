@@ -38,8 +38,8 @@ struct TreeRow {
     beam_count: u32,
     // First of its poses; one a beam, and one more that holds the wind at the tree.
     first_pose: u32,
-    // How far it is ahead of the season, in years.
-    season_shift: f32,
+    // Low half: how far it is ahead of the season; high half: its height. See `season_shift` and `height_m`.
+    season_and_height: u32,
 }
 
 // How a beam is bent, and the rigid motion that its ancestors give to its rest frame.
@@ -65,9 +65,45 @@ struct Frame {
     tree_count: u32,
     // Time of the year, 0..1.
     year: f32,
+    // Where levels 0, 1 and 2 of a tree end, for each metre of its height.
+    level_0_end: f32,
+    level_1_end: f32,
+    level_2_end: f32,
+    // Nowhere nearer than this do cards stand for trees, m.
+    cards_from_m: f32,
+    // Over this share of a distance, to either side, levels fade.
+    fade: f32,
     padding_a: f32,
     padding_b: f32,
-    padding_c: f32,
+}
+
+// How far a tree is ahead of the season, in years.
+fn season_shift(tree: TreeRow) -> f32 {
+    return (f32(tree.season_and_height & 0xffffu) - 32768.0) / 65536.0;
+}
+
+// Its height, m.
+fn height_m(tree: TreeRow) -> f32 {
+    return f32(tree.season_and_height >> 16u) / 256.0;
+}
+
+// Where a level of a tree of that height ends, m.
+fn level_end_m(frame: Frame, rung: u32, height_m: f32) -> f32 {
+    var ends = vec4(frame.level_0_end, frame.level_1_end, frame.level_2_end, 1e30);
+    return ends[rung] * height_m;
+}
+
+// Models have a ladder of ages, and cards any age: the heights of a tree and of its card differ by less than this.
+const LADDER: f32 = 1.17;
+
+// Where a tree of that height has a card behind it and ends, m: the card is whole before the tree begins to go.
+fn tree_end_m(frame: Frame, height_m: f32) -> f32 {
+    return min(frame.cards_from_m, frame.level_2_end * height_m * LADDER);
+}
+
+// Where a card begins that stands for a tree of that height, m.
+fn card_begin_m(frame: Frame, height_m: f32) -> f32 {
+    return min(frame.cards_from_m, frame.level_2_end * height_m) / (1.0 + frame.fade);
 }
 
 const NO_PARENT: u32 = 0xffffffffu;

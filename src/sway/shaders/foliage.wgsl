@@ -14,15 +14,11 @@
 #endif
 #endif
 
-#ifdef VISIBILITY_RANGE_DITHER
 #import bevy_pbr::pbr_functions::visibility_range_dither
-#endif
 
 @fragment
 fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
-#ifdef VISIBILITY_RANGE_DITHER
     visibility_range_dither(in.position, in.visibility_range_dither);
-#endif
     var pbr_input = pbr_input_from_standard_material(in, is_front);
 #ifdef WINDWOOD_LEAVES
     if !leaf::is_billow() {

@@ -12,6 +12,7 @@
 #endif
 
 fn cut_out(in: prepass_io::VertexOutput) {
+    pbr_functions::visibility_range_dither(in.position, in.visibility_range_dither);
 #ifdef VERTEX_UVS_A
 #ifdef WINDWOOD_LEAVES
     let texel = textureSampleBias(base_color_texture, base_color_sampler, in.uv, view.mip_bias);
@@ -21,6 +22,12 @@ fn cut_out(in: prepass_io::VertexOutput) {
     if alpha < material.alpha_cutoff || (!is_billow && !season::is_there(texel.rgb, in.uv, in.color.a, max(span.x, span.y))) {
         discard;
     }
+#else
+#ifdef MAY_DISCARD
+    if textureSampleBias(base_color_texture, base_color_sampler, in.uv, view.mip_bias).a < material.alpha_cutoff {
+        discard;
+    }
+#endif
 #endif
 #endif
 }
@@ -28,9 +35,6 @@ fn cut_out(in: prepass_io::VertexOutput) {
 #ifdef PREPASS_FRAGMENT
 @fragment
 fn fragment(in: prepass_io::VertexOutput) -> prepass_io::FragmentOutput {
-#ifdef VISIBILITY_RANGE_DITHER
-    pbr_functions::visibility_range_dither(in.position, in.visibility_range_dither);
-#endif
     cut_out(in);
     var out: prepass_io::FragmentOutput;
 #ifdef UNCLIPPED_DEPTH_ORTHO_EMULATION

@@ -6,6 +6,7 @@
 #import bevy_pbr::mesh_view_bindings::view
 #import bevy_pbr::view_transformations::position_world_to_clip
 #import bevy_windwood::beam
+#import bevy_windwood::level
 
 #ifdef WINDWOOD_LEAVES
 #import bevy_windwood::leaf
@@ -38,11 +39,35 @@ struct Vertex {
 @group(#{MATERIAL_BIND_GROUP}) @binding(102) var<storage, read> trees: array<beam::TreeRow>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(103) var<storage, read> frame: beam::Frame;
 
-// The instance tag: the tree's row, and a tint of its own above it.
-const TREE_BITS: u32 = 24u;
+// The instance tag, see `Tag` in `sway/draw.rs`: the tree's row, its level, how that fades, and a tint.
+const TREE_BITS: u32 = 16u;
+const FADES_OUT: u32 = 1u << 18u;
+const FADES_IN: u32 = 1u << 19u;
+const CARDS_BEHIND: u32 = 1u << 20u;
+const TINT_BIT: u32 = 24u;
 
 fn tree_of(tag: u32) -> beam::TreeRow {
     return trees[tag & ((1u << TREE_BITS) - 1u)];
+}
+
+// How much of this level is to be seen from where the camera is, also in its shadow maps.
+fn dither_of(tag: u32, tree: beam::TreeRow) -> i32 {
+    let distance_m = distance(view.lod_view_world_position, tree.position);
+    let height_m = beam::height_m(tree);
+    let rung = (tag >> TREE_BITS) & 3u;
+    if (tag & FADES_IN) != 0u && rung > 0u {
+        let coming = level::gone(distance_m, beam::level_end_m(frame, rung - 1u, height_m), frame.fade);
+        if coming < level::NOTHING {
+            return coming - level::NOTHING;
+        }
+    }
+    if (tag & FADES_OUT) != 0u {
+        return level::gone(distance_m, beam::level_end_m(frame, rung, height_m), frame.fade);
+    }
+    if (tag & CARDS_BEHIND) != 0u {
+        return level::gone(distance_m, beam::tree_end_m(frame, height_m), frame.fade);
+    }
+    return 0;
 }
 
 fn direction_to_eye(place: vec3<f32>) -> vec3<f32> {
@@ -56,7 +81,7 @@ fn direction_to_eye(place: vec3<f32>) -> vec3<f32> {
 #ifdef WINDWOOD_LEAVES
 // How early a cluster is in the year, -1..1: alike within a branch and, less so, within a tree.
 fn lag_of(in: Vertex, tag: u32) -> f32 {
-    return (in.axis.w - 0.5) + (f32(tag >> TREE_BITS) / 255.0 - 0.5);
+    return (in.axis.w - 0.5) + (f32(tag >> TINT_BIT) / 255.0 - 0.5);
 }
 #endif
 
@@ -100,7 +125,7 @@ fn vertex(in: Vertex) -> VertexOutput {
     let tag = mesh_functions::get_tag(in.instance_index);
     let tree = tree_of(tag);
 #ifdef WINDWOOD_LEAVES
-    let state = season::leaves(fract(frame.year + tree.season_shift), lag_of(in, tag), in.sway.z);
+    let state = season::leaves(fract(frame.year + beam::season_shift(tree)), lag_of(in, tag), in.sway.z);
     let now = swayed(in, tree, frame.poses_now, frame.leaf_time.x, state);
 #else
     let now = swayed(in, tree, frame.poses_now, frame.leaf_time.x);
@@ -164,10 +189,11 @@ fn vertex(in: Vertex) -> VertexOutput {
 #ifdef VERTEX_OUTPUT_INSTANCE_INDEX
     out.instance_index = in.instance_index;
 #endif
-#ifdef VISIBILITY_RANGE_DITHER
-    out.visibility_range_dither =
-        mesh_functions::get_visibility_range_dither_level(in.instance_index, world_from_local[3]);
-#endif
+    out.visibility_range_dither = dither_of(tag, tree);
+    if level::is_nothing(out.visibility_range_dither) {
+        // Every corner is one point out of sight, and no pixel is touched.
+        out.position = vec4(0.0, 0.0, 2.0, 1.0);
+    }
     return out;
 }
 
@@ -195,7 +221,7 @@ fn tangent(in: Vertex, tree: beam::TreeRow, now: beam::Motion, normal: vec3<f32>
 // Light lost in the crown, and the natural variation between trees and between leaves.
 fn shade(in: Vertex, tag: u32) -> vec3<f32> {
 #ifdef WINDWOOD_LEAVES
-    let own = f32(tag >> TREE_BITS) / 255.0 - 0.5;
+    let own = f32(tag >> TINT_BIT) / 255.0 - 0.5;
     let light = (0.25 + 0.75 * in.sway.w) * (0.85 + 0.35 * in.axis.w);
     let warmth = in.axis.w + own;
     return light * vec3(0.92 + 0.2 * warmth, 1.0 + 0.06 * own, 1.05 - 0.25 * warmth);

@@ -3,7 +3,7 @@
 #import bevy_pbr::mesh_functions
 #import bevy_pbr::mesh_view_bindings::view
 #import bevy_pbr::view_transformations::position_world_to_clip
-#import bevy_windwood::far
+#import bevy_windwood::{beam, far, level}
 
 #ifdef PREPASS_PIPELINE
 #import bevy_pbr::prepass_io::VertexOutput
@@ -19,7 +19,9 @@ struct Vertex {
     @location(8) code: u32,
 }
 
-// The cells whose trees stand near: first cell, side of a cell (bits), a spare word, then a word of bits a row. See `near.rs`.
+@group(#{MATERIAL_BIND_GROUP}) @binding(103) var<storage, read> frame: beam::Frame;
+// The cells whose trees stand near: first cell, side of a cell and farthest distance (bits), then a word of bits a row. See
+// `near.rs`.
 @group(#{MATERIAL_BIND_GROUP}) @binding(108) var<storage, read> near_cells: array<u32>;
 
 const NEAR_SIDE: i32 = 32;
@@ -34,6 +36,20 @@ fn stands_near(place: vec2<f32>) -> bool {
         return false;
     }
     return ((near_cells[4 + at.y] >> u32(at.x)) & 1u) == 1u;
+}
+
+// How much of a card is to be seen from where the camera is: where its tree stands near, it comes as the tree goes; at the
+// border of the far trees it goes.
+fn dither_of(foot: vec3<f32>, height_m: f32) -> i32 {
+    let distance_m = distance(view.lod_view_world_position, foot);
+    if stands_near(foot.xz) {
+        let coming = level::gone(distance_m, beam::card_begin_m(frame, height_m), frame.fade);
+        if coming < level::NOTHING {
+            return coming - level::NOTHING;
+        }
+    }
+    let farthest_m = bitcast<f32>(near_cells[3]);
+    return level::gone(distance_m, farthest_m / (1.0 + frame.fade), frame.fade);
 }
 
 // Whether rays are parallel, as those of the sun are.
@@ -69,7 +85,9 @@ fn vertex(in: Vertex) -> VertexOutput {
         out.world_position = vec4(out.world_position.xyz - view.world_from_view[2].xyz * (far::views.radius_m * size), 1.0);
     }
     out.position = position_world_to_clip(out.world_position.xyz);
-    if stands_near(foot.xz) {
+    let dither = dither_of(foot, (far::views.centre.y + far::views.half_height_m) * size);
+    out.visibility_range_dither = dither;
+    if level::is_nothing(dither) {
         // All four corners are one point, and nothing is drawn.
         out.position = vec4(0.0, 0.0, 2.0, 1.0);
     }
@@ -94,10 +112,6 @@ fn vertex(in: Vertex) -> VertexOutput {
 #endif
 #ifdef VERTEX_OUTPUT_INSTANCE_INDEX
     out.instance_index = in.instance_index;
-#endif
-#ifdef VISIBILITY_RANGE_DITHER
-    out.visibility_range_dither =
-        mesh_functions::get_visibility_range_dither_level(in.instance_index, world_from_local[3]);
 #endif
     return out;
 }

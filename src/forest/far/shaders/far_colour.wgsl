@@ -2,13 +2,14 @@
 
 #import bevy_pbr::forward_io::{FragmentOutput, VertexOutput}
 #import bevy_pbr::pbr_fragment::pbr_input_from_standard_material
-#import bevy_pbr::pbr_functions::{apply_pbr_lighting, main_pass_post_lighting_processing}
+#import bevy_pbr::pbr_functions::{apply_pbr_lighting, main_pass_post_lighting_processing, visibility_range_dither}
 #import bevy_windwood::{beam, far, season}
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(103) var<storage, read> frame: beam::Frame;
 
 @fragment
 fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
+    visibility_range_dither(in.position, in.visibility_range_dither);
     let seen = far::seen_at(in.uv, in.color.xyz);
     let tint = in.uv_b.y;
     // Leaves come and go, and turn, at a place of the crown's own time.

@@ -1,0 +1,173 @@
+//! What is cut for a species in the background: the meshes of its levels, and what each piece is made of.
+
+use super::{
+    detail::LevelStyle,
+    material::{ATTRIBUTE_LEAF_ANCHOR, ATTRIBUTE_LEAF_AXIS, ATTRIBUTE_SWAY},
+};
+use crate::{
+    lod::{
+        CylinderLevel, EnvelopeVertices, LevelSettings, PlainVertices, Reduction, Scene, plain::plain, simplify::reduce,
+    },
+    texture::TextureData,
+    tree::{
+        Species, TreeModel,
+        leaf_mesh::LeafVertices,
+        mesh::WoodVertices,
+        painting::{SpeciesTextures, paint},
+    },
+};
+use bevy::{
+    asset::RenderAssetUsages,
+    mesh::{Indices, PrimitiveTopology},
+    prelude::*,
+};
+
+/// All that is prepared of a species at one age.
+pub(super) struct Cut {
+    /// Painted once for all ages.
+    pub textures: Option<SpeciesTextures>,
+    pub variants: Vec<VariantCut>,
+}
+
+pub(super) struct VariantCut {
+    /// From the finest to the coarsest: at least one.
+    pub levels: Vec<LevelCut>,
+    pub height_m: f32,
+}
+
+/// One level of a variant.
+pub(super) struct LevelCut {
+    pub wood: Piece,
+    pub leaves: Option<Piece>,
+    /// Whether its wood is part of that of the level before: then that is enough where both are worn.
+    pub nested: bool,
+}
+
+/// A mesh and what it is made of.
+pub(super) struct Piece {
+    pub mesh: Mesh,
+    pub cloth: Cloth,
+}
+
+pub(super) enum Cloth {
+    Bark,
+    /// Bark that fades into another level; it needs a mask, which costs.
+    FadingBark,
+    Foliage,
+    Envelope(Box<EnvelopeCloth>),
+    /// Linear colours of trunk and crown.
+    Plain([[f32; 3]; 2]),
+}
+
+impl Cloth {
+    /// Whether its shader can show it in part.
+    pub fn fades(&self) -> bool {
+        !matches!(self, Self::Bark)
+    }
+}
+
+/// What an envelope of leaves wears.
+pub(super) struct EnvelopeCloth {
+    pub colour: TextureData,
+}
+
+/// Cuts the levels of a style for each variant; with `painting`, paints the species, too.
+pub(super) fn cut(species: &Species, painting: bool, models: Vec<TreeModel>, style: LevelStyle) -> Cut {
+    let textures = (painting || style == LevelStyle::Paper).then(|| paint(species));
+    let settings = LevelSettings::default();
+    let levels = |model: TreeModel| match (style, &textures) {
+        (LevelStyle::Paper, Some(textures)) => paper_levels(species, model, textures, &settings),
+        (LevelStyle::Thinned, _) => thinned_levels(model, &settings.reductions),
+        (LevelStyle::Full | LevelStyle::Paper, _) => vec![full_level(model, Cloth::Bark)],
+    };
+    let variant = |model: TreeModel| VariantCut { height_m: model.height_m(), levels: levels(model) };
+    let variants = models.into_iter().map(variant).collect();
+    Cut { textures: textures.filter(|_| painting), variants }
+}
+
+fn full_level(model: TreeModel, bark: Cloth) -> LevelCut {
+    LevelCut { wood: Piece { mesh: wood_mesh(model.wood), cloth: bark }, leaves: foliage(model.leaves), nested: false }
+}
+
+fn foliage(leaves: LeafVertices) -> Option<Piece> {
+    (!leaves.indices.is_empty()).then(|| Piece { mesh: leaf_mesh(leaves), cloth: Cloth::Foliage })
+}
+
+/// The tree itself, and it thinned: only the last of its barks fades, into the cards behind it. Between the others no more
+/// goes than twigs thinner than a pixel.
+fn thinned_levels(model: TreeModel, reductions: &[Reduction]) -> Vec<LevelCut> {
+    let last = reductions.len();
+    let thinned = reductions.iter().enumerate().map(|(number, reduction)| {
+        let meshes = reduce(&model, reduction);
+        let cloth = if number + 1 == last { Cloth::FadingBark } else { Cloth::Bark };
+        let wood = Piece { mesh: wood_mesh(meshes.wood), cloth };
+        LevelCut { wood, leaves: foliage(meshes.leaves), nested: true }
+    });
+    let mut levels: Vec<LevelCut> = thinned.collect();
+    let first = if last == 0 { Cloth::FadingBark } else { Cloth::Bark };
+    levels.insert(0, full_level(model, first));
+    levels
+}
+
+/// The paper's: trunk and envelope, then four polygons.
+fn paper_levels(
+    species: &Species,
+    model: TreeModel,
+    textures: &SpeciesTextures,
+    settings: &LevelSettings,
+) -> Vec<LevelCut> {
+    let scene = Scene::new(species, &model, textures);
+    let cylinder = CylinderLevel::bake(&scene, species, &model, &settings.cylinder);
+    let four = plain(&scene, &model, cylinder.as_ref());
+    drop(scene);
+    let colours = [four.colours.first(), four.colours.last()].map(|colour| colour.copied().unwrap_or([0.1; 3]));
+    let low = Piece { mesh: plain_mesh(four), cloth: Cloth::Plain(colours) };
+    let medium = cylinder.map(|CylinderLevel { envelope, trunk, colour, .. }| {
+        let cloth = Cloth::Envelope(Box::new(EnvelopeCloth { colour }));
+        LevelCut {
+            wood: Piece { mesh: wood_mesh(trunk), cloth: Cloth::FadingBark },
+            leaves: Some(Piece { mesh: envelope_mesh(envelope), cloth }),
+            nested: false,
+        }
+    });
+    let low = LevelCut { wood: low, leaves: None, nested: false };
+    std::iter::once(full_level(model, Cloth::FadingBark)).chain(medium).chain([low]).collect()
+}
+
+fn wood_mesh(wood: WoodVertices) -> Mesh {
+    mesh(wood.positions, wood.normals, wood.uvs, wood.sway, wood.indices)
+}
+
+fn envelope_mesh(envelope: EnvelopeVertices) -> Mesh {
+    mesh(envelope.positions, envelope.normals, envelope.uvs, envelope.sway, envelope.indices)
+}
+
+/// Its colours are two texels, of which each vertex has one; it stands as the root of the trunk does: still.
+fn plain_mesh(four: PlainVertices) -> Mesh {
+    let trunk = four.colours.first().copied();
+    let uv = |colour: &[f32; 3]| [if Some(*colour) == trunk { 0.25 } else { 0.75 }, 0.5];
+    let uvs = four.colours.iter().map(uv).collect();
+    let sway = vec![[0.0, 0.0, 0.0, 1.0]; four.positions.len()];
+    mesh(four.positions, four.normals, uvs, sway, four.indices)
+}
+
+fn leaf_mesh(leaves: LeafVertices) -> Mesh {
+    mesh(leaves.positions, leaves.normals, leaves.uvs, leaves.sway, leaves.indices)
+        .with_inserted_attribute(ATTRIBUTE_LEAF_AXIS, leaves.axis)
+        .with_inserted_attribute(ATTRIBUTE_LEAF_ANCHOR, leaves.anchor)
+}
+
+fn mesh(
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    uvs: Vec<[f32; 2]>,
+    sway: Vec<[f32; 4]>,
+    indices: Vec<u32>,
+) -> Mesh {
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
+        .with_inserted_attribute(ATTRIBUTE_SWAY, sway)
+        .with_inserted_indices(Indices::U32(indices))
+}
