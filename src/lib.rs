@@ -40,6 +40,7 @@ mod schedule;
 mod setting;
 #[cfg(feature = "render")]
 mod shading;
+mod timing;
 mod viewpoint;
 
 pub mod cells;
@@ -57,6 +58,7 @@ pub mod wind;
 
 pub use schedule::WindwoodSystems;
 pub use setting::SettingError;
+pub use timing::SystemTimes;
 pub use viewpoint::Viewpoint;
 
 use bevy::app::{PluginGroup, PluginGroupBuilder};

@@ -23,7 +23,7 @@ const MAY_KNOW: [(&str, &[&str]); 12] = [
 
 /// Files that glue a room to the engine. All others but those of `sway` are pure: they can be read beside the
 /// paper, and know no entities, systems or apps.
-const GLUE: [&str; 36] = [
+const GLUE: [&str; 38] = [
     "wind/cells.rs",
     "wind/clock.rs",
     "wind/current.rs",
@@ -54,6 +54,8 @@ const GLUE: [&str; 36] = [
     "forest/loader.rs",
     "forest/plugin.rs",
     "forest/cells.rs",
+    "forest/cull.rs",
+    "forest/diagnose.rs",
     "forest/near.rs",
     "terrain/components.rs",
     "terrain/material.rs",

@@ -94,6 +94,15 @@ impl CellStore {
     }
 }
 
+impl View {
+    /// How a box with these corners, m, is seen: in view itself (true), or only by its shadow (false); `None` where neither
+    /// is.
+    pub fn sees(&self, min: Vec3, max: Vec3) -> Option<bool> {
+        let bounds = Bounds { centre: 0.5 * (min + max), half: 0.5 * (max - min) };
+        Watch::new(self).sight(&bounds, ALL_PLANES).map(|sight| sight.in_view)
+    }
+}
+
 impl TreeExtent {
     fn bounded(self) -> Self {
         Self { height_m: bounded(self.height_m, LARGEST_M), reach_m: bounded(self.reach_m, LARGEST_M) }

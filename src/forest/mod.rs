@@ -6,11 +6,16 @@
 //! - `near` turns the plants of near cells into [`Tree`](crate::tree::Tree)s, a few a frame. What stands where follows from
 //!   the plan alone, in whatever order cells come.
 //! - With the feature `render`, `far` draws the trees beyond as cards, a block of cells at a time.
+//! - With it, too, `cull` hides near cells out of view, and `diagnose` tells how the forest does.
 //! - [`PlanCover`] tells the ground where the woods are, so that they are seen beyond the last tree.
 
 mod cells;
 mod components;
 mod cover;
+#[cfg(feature = "render")]
+mod cull;
+#[cfg(feature = "render")]
+mod diagnose;
 #[cfg(feature = "render")]
 mod far;
 mod loader;
@@ -20,7 +25,11 @@ mod plugin;
 pub use cells::ForestCells;
 pub use components::{Forest, ForestCell, ForestGround, ForestSettings};
 pub use cover::{PlanCover, StandingGround};
-#[cfg(feature = "render")]
-pub use far::{FarBlocks, ForestDrawPlugin};
 pub use loader::ForestLoadError;
 pub use plugin::ForestPlugin;
+#[cfg(feature = "render")]
+pub use {
+    cull::ForestCulling,
+    diagnose::{ForestDiagnosticsPlugin, ForestGizmos},
+    far::{FarBlocks, ForestDrawPlugin},
+};

@@ -1,9 +1,13 @@
 //! Trees near the viewers: cells whose plants are entities.
 
+#[cfg(feature = "render")]
+use super::cull::{ForestCulling, Reach};
 use super::{
     cells::{ForestCells, reaching},
     components::{ForestCell, ForestSettings},
 };
+#[cfg(feature = "render")]
+use crate::cells::View;
 use crate::{
     cells::{CellSet, CellStream, Orders, StreamSettings, Viewpoint},
     scatter::Planted,
@@ -19,12 +23,17 @@ use bevy::{
 
 /// The near cells of a forest.
 pub(super) struct NearTrees {
+    #[cfg_attr(not(feature = "render"), expect(dead_code))]
+    cell_m: f32,
     stream: CellStream,
     orders: Orders,
     planting: Vec<(IVec2, Task<Vec<Planted>>)>,
     cells: NearCells,
     /// Cells whose trees are still to come, the first first.
     bare: Vec<IVec2>,
+    /// By the number of the species.
+    #[cfg(feature = "render")]
+    pub reaches: Vec<Reach>,
 }
 
 /// The cells that are there.
@@ -37,7 +46,53 @@ struct NearCell {
     /// Plants that have become trees.
     raised: usize,
     /// Whether all of them are drawn.
+    #[cfg_attr(not(feature = "render"), expect(dead_code))]
     dressed: bool,
+    #[cfg_attr(not(feature = "render"), expect(dead_code))]
+    extent: Extent,
+    /// For so many frames nobody has seen it.
+    #[cfg_attr(not(feature = "render"), expect(dead_code))]
+    unseen_frames: u8,
+}
+
+/// How low, how high and how large the plants of a cell are.
+#[cfg_attr(not(feature = "render"), expect(dead_code))]
+struct Extent {
+    lowest_m: f32,
+    highest_m: f32,
+    /// Number of a species, and the greatest scale of its plants.
+    largest: Box<[(u8, f32)]>,
+}
+
+impl Extent {
+    fn of(planted: &[Planted]) -> Self {
+        let mut largest: Vec<(u8, f32)> = Vec::new();
+        for plant in planted {
+            match largest.iter_mut().find(|(species, _)| *species == plant.species) {
+                Some((_, scale)) => *scale = scale.max(plant.vigour),
+                None => largest.push((plant.species, plant.vigour)),
+            }
+        }
+        let heights_m = || planted.iter().map(|plant| plant.position.y);
+        Self {
+            lowest_m: heights_m().fold(f32::INFINITY, f32::min),
+            highest_m: heights_m().fold(f32::NEG_INFINITY, f32::max),
+            largest: largest.into(),
+        }
+    }
+
+    /// The corners of the box around the cell's trees, swaying.
+    #[cfg(feature = "render")]
+    fn corners(&self, corner: Vec2, cell_m: f32, reaches: &[Reach]) -> [Vec3; 2] {
+        let [mut up_m, mut down_m, mut aside_m] = [0.0_f32; 3];
+        for (species, scale) in &self.largest {
+            let reach = reaches.get(usize::from(*species)).copied().unwrap_or_default();
+            (up_m, down_m) = (up_m.max(scale * reach.up_m), down_m.max(scale * reach.down_m));
+            aside_m = aside_m.max(scale * reach.aside_m);
+        }
+        let (min, max) = (corner - aside_m, corner + cell_m + aside_m);
+        [Vec3::new(min.x, self.lowest_m - down_m, min.y), Vec3::new(max.x, self.highest_m + up_m, max.y)]
+    }
 }
 
 impl CellSet for NearCells {
@@ -61,11 +116,14 @@ impl NearTrees {
             ..reaching(settings.trees_to_m, cell_m)
         };
         Ok(Self {
+            cell_m,
             stream: CellStream::new(stream, cell_m, bounds)?,
             orders: Orders::default(),
             planting: Vec::new(),
             cells: NearCells::default(),
             bare: Vec::new(),
+            #[cfg(feature = "render")]
+            reaches: Vec::new(),
         })
     }
 
@@ -91,6 +149,43 @@ impl NearTrees {
         self.cells.0.iter().filter(|(_, cell)| cell.dressed).map(|(cell, _)| *cell)
     }
 
+    /// Looks at every cell, and tells by its entity whether it is to be shown.
+    #[cfg(feature = "render")]
+    pub fn show_seen(
+        &mut self,
+        settings: ForestCulling,
+        views: &[View],
+        lingering_frames: u8,
+        mut show: impl FnMut(Entity, bool),
+    ) {
+        let Self { cells, reaches, cell_m, .. } = self;
+        for (cell, there) in &mut cells.0 {
+            let [min, max] = there.extent.corners(cell.as_vec2() * *cell_m, *cell_m, reaches);
+            let is_near = |view: &View| view.eye_m.distance(view.eye_m.clamp(min, max)) <= settings.around_m;
+            let is_seen = |view: &View| is_near(view) || view.sees(min, max).is_some();
+            // Where nobody looks, what is there stays.
+            let seen = !settings.enabled || views.is_empty() || min.y > max.y || views.iter().any(is_seen);
+            there.unseen_frames = if seen { 0 } else { there.unseen_frames.saturating_add(1) };
+            show(there.entity, there.unseen_frames <= lingering_frames);
+        }
+    }
+
+    /// Cells that are there, and those that were seen in the last frame.
+    #[cfg(feature = "render")]
+    pub fn count(&self) -> (usize, usize) {
+        let seen = self.cells.0.values().filter(|cell| cell.unseen_frames == 0).count();
+        (self.cells.0.len(), seen)
+    }
+
+    /// Every cell, the box around its trees, and whether it was seen in the last frame.
+    #[cfg(feature = "render")]
+    pub fn boxes(&self) -> impl Iterator<Item = ([Vec3; 2], bool)> {
+        self.cells.0.iter().map(|(cell, there)| {
+            let corners = there.extent.corners(cell.as_vec2() * self.cell_m, self.cell_m, &self.reaches);
+            (corners, there.unseen_frames == 0)
+        })
+    }
+
     /// Takes over cells that have been planted.
     fn receive(&mut self, forest: Entity, commands: &mut Commands) {
         let Self { planting, cells, bare, stream, .. } = self;
@@ -104,8 +199,15 @@ impl NearTrees {
             if !planted.is_empty() {
                 bare.push(*cell);
             }
-            let dressed = planted.is_empty();
-            cells.0.insert(*cell, NearCell { entity: entity.id(), dressed, planted, raised: 0 });
+            let near = NearCell {
+                entity: entity.id(),
+                dressed: planted.is_empty(),
+                extent: Extent::of(&planted),
+                planted,
+                raised: 0,
+                unseen_frames: 0,
+            };
+            cells.0.insert(*cell, near);
             false
         });
     }

@@ -6,7 +6,9 @@ use super::{
     loader::ForestLoader,
     near::raise_trees,
 };
-use crate::{scatter::ForestPlan, schedule::WindwoodSystems, tree::TreePlugin, viewpoint::give_cameras_viewpoints};
+use crate::{
+    scatter::ForestPlan, schedule::WindwoodSystems, timing::timed, tree::TreePlugin, viewpoint::give_cameras_viewpoints,
+};
 use bevy::prelude::*;
 
 /// Forests that grow from plans, with or without drawing. Needs [`TreePlugin`].
@@ -20,7 +22,12 @@ impl Plugin for ForestPlugin {
             .init_asset_loader::<ForestLoader>()
             .register_asset_reflect::<ForestPlan>()
             .register_type::<Forest>()
-            .register_type::<ForestSettings>()
-            .add_systems(Update, (begin_forests, plant_cells, raise_trees).chain().before(WindwoodSystems::Grow));
+            .register_type::<ForestSettings>();
+        let stream = (
+            timed(app, "begin_forests", begin_forests),
+            timed(app, "plant_cells", plant_cells),
+            timed(app, "raise_trees", raise_trees),
+        );
+        app.add_systems(Update, stream.chain().before(WindwoodSystems::Grow));
     }
 }

@@ -122,11 +122,11 @@ fn paper_levels(
     drop(scene);
     let colours = [four.colours.first(), four.colours.last()].map(|colour| colour.copied().unwrap_or([0.1; 3]));
     let low = Piece { mesh: plain_mesh(four), cloth: Cloth::Plain(colours) };
-    let medium = cylinder.map(|CylinderLevel { envelope, trunk, colour, .. }| {
+    let medium = cylinder.map(|CylinderLevel { envelope, trunk, colour, images, .. }| {
         let cloth = Cloth::Envelope(Box::new(EnvelopeCloth { colour }));
         LevelCut {
             wood: Piece { mesh: wood_mesh(trunk), cloth: Cloth::FadingBark },
-            leaves: Some(Piece { mesh: envelope_mesh(envelope), cloth }),
+            leaves: Some(Piece { mesh: envelope_mesh(envelope, images), cloth }),
             nested: false,
         }
     });
@@ -138,8 +138,11 @@ fn wood_mesh(wood: WoodVertices) -> Mesh {
     mesh(wood.positions, wood.normals, wood.uvs, wood.sway, wood.indices)
 }
 
-fn envelope_mesh(envelope: EnvelopeVertices) -> Mesh {
+/// Its second coordinates hold the number of images of its sequence, and mark it as an envelope.
+fn envelope_mesh(envelope: EnvelopeVertices, images: u32) -> Mesh {
+    let sequence = vec![[images as f32, 0.0]; envelope.positions.len()];
     mesh(envelope.positions, envelope.normals, envelope.uvs, envelope.sway, envelope.indices)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_UV_1, sequence)
 }
 
 /// Its colours are two texels, of which each vertex has one; it stands as the root of the trunk does: still.

@@ -4,16 +4,13 @@
 //! wears another level; between, the frame's clock is the only thing that changes.
 
 use super::{
-    detail::{Levels, Sight},
+    detail::{Levels, MOST_LEVELS, Sight},
     looks::{Garment, SpeciesDressed, VariantLook, Wardrobe},
+    rouse::CulledOnGpu,
     stand::{Stand, Standing},
 };
 use crate::tree::{Grown, Species, Tree};
-use bevy::{
-    camera::visibility::{NoAutoAabb, NoCpuCulling},
-    mesh::MeshTag,
-    prelude::*,
-};
+use bevy::{camera::visibility::NoAutoAabb, mesh::MeshTag, prelude::*};
 
 /// How this machine can draw trees; found out once at start.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +48,35 @@ pub(super) struct Worn {
     /// Its height while its scale is 1, m.
     pub height_m: f32,
     tint: u8,
+}
+
+/// Which levels trees wear.
+#[derive(bevy::ecs::system::SystemParam)]
+pub(crate) struct TreesByLevel<'w, 's> {
+    trees: Query<'w, 's, (&'static Worn, &'static GlobalTransform)>,
+    stand: Option<Res<'w, Stand>>,
+}
+
+impl TreesByLevel<'_, '_> {
+    /// Trees of each level, and how many of them fade into the next.
+    pub fn count(&self) -> ([usize; MOST_LEVELS], usize) {
+        let mut count = ([0; MOST_LEVELS], 0);
+        for (Worn { levels, .. }, _) in &self.trees {
+            count.0[usize::from(levels.first).min(MOST_LEVELS - 1)] += 1;
+            count.1 += usize::from(levels.both);
+        }
+        count
+    }
+
+    /// What the tables of trees have on the graphics processor, bytes.
+    pub fn table_bytes(&self) -> usize {
+        self.stand.as_ref().map_or(0, |stand| stand.bytes())
+    }
+
+    /// Where each tree stands, and its level.
+    pub fn iter(&self) -> impl Iterator<Item = (Vec3, usize)> + '_ {
+        self.trees.iter().map(|(worn, at)| (at.translation(), usize::from(worn.levels.first)))
+    }
 }
 
 /// Trees that change their level in a frame, at most; each takes some microseconds.
@@ -229,7 +255,7 @@ impl Dress<'_> {
             _ => entity.insert(MeshMaterial3d(garment.outfit.still.clone())),
         };
         if self.path.culls_on_gpu {
-            entity.insert(NoCpuCulling);
+            entity.insert(CulledOnGpu);
         }
     }
 }

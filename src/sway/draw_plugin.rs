@@ -7,11 +7,12 @@ use super::{
     draw::{DrawPath, choose_levels, dress_trees},
     looks::{SpeciesDressed, Tailoring, Wardrobe, finish_tailoring, start_tailoring},
     material::SwayMaterial,
+    rouse::{calm_meshes, rouse_meshes},
     rows::POSE_BYTES,
     stand::{Stand, dismiss_tree, place_trees},
     upload::{StandBuffers, StandTables, upload_frame, upload_winds},
 };
-use crate::{schedule::WindwoodSystems, tree::receive_models, viewpoint::give_cameras_viewpoints};
+use crate::{schedule::WindwoodSystems, timing::timed, tree::receive_models, viewpoint::give_cameras_viewpoints};
 use bevy::{
     asset::embedded_asset,
     pbr::MaterialPlugin,
@@ -57,14 +58,21 @@ impl Plugin for SwayDrawPlugin {
             .add_message::<SpeciesDressed>()
             .add_observer(dismiss_tree)
             .configure_sets(PostUpdate, WindwoodSystems::Upload.after(TransformSystems::Propagate))
-            .add_systems(
-                Update,
-                (look_about, start_tailoring.after(receive_models), finish_tailoring, choose_levels, dress_trees)
-                    .chain()
-                    .in_set(WindwoodSystems::Grow)
-                    .run_if(resource_exists::<DrawPath>),
-            )
-            .add_systems(PostUpdate, (upload_winds, place_trees, upload_frame).chain().in_set(WindwoodSystems::Upload));
+            .add_systems(Update, (rouse_meshes, calm_meshes));
+        let dress = (
+            timed(app, "look_about", look_about),
+            timed(app, "start_tailoring", start_tailoring).after(receive_models),
+            timed(app, "finish_tailoring", finish_tailoring),
+            timed(app, "choose_levels", choose_levels),
+            timed(app, "dress_trees", dress_trees),
+        );
+        let dress = dress.chain().in_set(WindwoodSystems::Grow).run_if(resource_exists::<DrawPath>);
+        let upload = (
+            timed(app, "upload_winds", upload_winds),
+            timed(app, "place_trees", place_trees),
+            timed(app, "upload_frame", upload_frame),
+        );
+        app.add_systems(Update, dress).add_systems(PostUpdate, upload.chain().in_set(WindwoodSystems::Upload));
     }
 
     /// The renderer knows its device only now.

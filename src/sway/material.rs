@@ -161,11 +161,18 @@ impl MaterialExtension for SwayExtension {
             attributes.push(ATTRIBUTE_LEAF_AXIS.at_shader_location(9));
             attributes.push(ATTRIBUTE_LEAF_ANCHOR.at_shader_location(10));
         }
+        let envelope = layout.0.contains(Mesh::ATTRIBUTE_UV_1);
+        if envelope {
+            attributes.push(Mesh::ATTRIBUTE_UV_1.at_shader_location(3));
+        }
         descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];
 
         // The second coordinates carry the season of a leaf to its fragments.
-        let own: &[&str] = if leaves { &["WINDWOOD_LEAVES", "VERTEX_UVS_B"] } else { &[] };
-        define(descriptor, own);
+        if leaves {
+            define(descriptor, &["WINDWOOD_LEAVES", "VERTEX_UVS_B"]);
+        } else if envelope {
+            define(descriptor, &["WINDWOOD_ENVELOPE", "VERTEX_UVS_B"]);
+        }
         // The dither of levels takes the place, among the vertex stage's results, of that of Bevy's own ranges.
         define(descriptor, &["VERTEX_COLORS", "VERTEX_TANGENTS", "VISIBILITY_RANGE_DITHER"]);
         Ok(())

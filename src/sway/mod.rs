@@ -30,6 +30,8 @@ mod material;
 #[cfg(feature = "render")]
 mod outfits;
 #[cfg(feature = "render")]
+mod rouse;
+#[cfg(feature = "render")]
 mod rows;
 #[cfg(feature = "render")]
 mod stand;
@@ -42,7 +44,12 @@ pub use plugin::SwayPlugin;
 pub use response::{SwaySettings, WindResponse};
 
 #[cfg(feature = "render")]
-pub(crate) use {detail::CardRange, draw::CardBehind, material::SeasonUniform};
+pub(crate) use {
+    detail::CardRange,
+    draw::{CardBehind, TreesByLevel},
+    material::SeasonUniform,
+    rouse::CulledOnGpu,
+};
 #[cfg(feature = "render")]
 pub use {
     detail::{LevelOfDetail, LevelStyle},

@@ -5,7 +5,7 @@ use super::{
     articulated::{articulate_trees, pose_beams, pose_trees, turn_leaves},
     response::SwaySettings,
 };
-use crate::schedule::WindwoodSystems;
+use crate::{schedule::WindwoodSystems, timing::timed};
 use bevy::prelude::*;
 
 /// The motion of trees in the wind: the response tables, and the entities of [`Articulated`](crate::tree::Articulated) trees.
@@ -17,11 +17,13 @@ impl Plugin for SwayPlugin {
             .init_resource::<SwaySettings>()
             .init_resource::<ActiveSway>()
             .configure_sets(PostUpdate, WindwoodSystems::Pose.before(TransformSystems::Propagate))
-            .add_systems(PreUpdate, (rebuild_tables, fade_tables).chain().after(WindwoodSystems::AdvanceWind))
-            .add_systems(Update, articulate_trees.after(WindwoodSystems::Grow))
-            .add_systems(
-                PostUpdate,
-                (pose_trees, (pose_beams, turn_leaves)).chain().in_set(WindwoodSystems::Pose).run_if(is_windy),
-            );
+            .configure_sets(PostUpdate, WindwoodSystems::Pose.run_if(is_windy));
+        let tables = (timed(app, "rebuild_tables", rebuild_tables), timed(app, "fade_tables", fade_tables));
+        let articulate = timed(app, "articulate_trees", articulate_trees);
+        let pose_trees = timed(app, "pose_trees", pose_trees);
+        let pose_parts = (timed(app, "pose_beams", pose_beams), timed(app, "turn_leaves", turn_leaves));
+        app.add_systems(PreUpdate, tables.chain().after(WindwoodSystems::AdvanceWind))
+            .add_systems(Update, articulate.after(WindwoodSystems::Grow))
+            .add_systems(PostUpdate, (pose_trees, pose_parts).chain().in_set(WindwoodSystems::Pose));
     }
 }

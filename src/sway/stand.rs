@@ -5,7 +5,7 @@
 
 use super::{
     draw::Worn,
-    rows::{BeamRow, TreeRow},
+    rows::{BeamRow, POSE_BYTES, TreeRow},
 };
 use crate::tree::{Tree, TreeModel};
 use bevy::{platform::collections::HashMap, prelude::*};
@@ -102,6 +102,12 @@ impl Stand {
 
     pub fn beams(&self) -> &[BeamRow] {
         &self.beams
+    }
+
+    /// What its tables have on the graphics processor, bytes: both halves of the poses, with their reserve.
+    pub fn bytes(&self) -> usize {
+        let poses = 2 * (self.poses.end + self.poses.end / 2) as usize * POSE_BYTES;
+        size_of_val(self.rows.as_slice()) + size_of_val(self.beams.as_slice()) + poses
     }
 
     /// Poses that are in use, or have been.

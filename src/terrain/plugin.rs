@@ -5,7 +5,7 @@ use super::{
     material::GroundMaterial,
     stream::{GroundTexture, begin_terrains, recolour, stream_ground},
 };
-use crate::{schedule::WindwoodSystems, viewpoint::give_cameras_viewpoints};
+use crate::{schedule::WindwoodSystems, timing::timed, viewpoint::give_cameras_viewpoints};
 use bevy::{asset::embedded_asset, pbr::MaterialPlugin, prelude::*, render::RenderApp};
 
 /// Draws [`Terrain`](super::Terrain). Without a renderer it does nothing.
@@ -22,7 +22,12 @@ impl Plugin for TerrainDrawPlugin {
         app.add_plugins(MaterialPlugin::<GroundMaterial>::default())
             .register_type::<TerrainSettings>()
             .register_type::<GroundLook>()
-            .init_resource::<GroundTexture>()
-            .add_systems(Update, (begin_terrains, recolour, stream_ground).chain().in_set(WindwoodSystems::Grow));
+            .init_resource::<GroundTexture>();
+        let stream = (
+            timed(app, "begin_terrains", begin_terrains),
+            timed(app, "recolour", recolour),
+            timed(app, "stream_ground", stream_ground),
+        );
+        app.add_systems(Update, stream.chain().in_set(WindwoodSystems::Grow));
     }
 }

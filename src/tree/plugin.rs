@@ -8,7 +8,7 @@ use super::{
     season::Season,
     species::Species,
 };
-use crate::schedule::WindwoodSystems;
+use crate::{schedule::WindwoodSystems, timing::timed};
 use bevy::prelude::*;
 
 /// Trees without drawing and without motion: loads and bakes species, gives [`Tree`] entities their models.
@@ -27,7 +27,12 @@ impl Plugin for TreePlugin {
             .register_type::<Season>()
             .init_resource::<Season>()
             .init_resource::<Grove>()
-            .add_message::<SpeciesBaked>()
-            .add_systems(Update, (adopt_species, receive_models, grow_trees).chain().in_set(WindwoodSystems::Grow));
+            .add_message::<SpeciesBaked>();
+        let grow = (
+            timed(app, "adopt_species", adopt_species),
+            timed(app, "receive_models", receive_models),
+            timed(app, "grow_trees", grow_trees),
+        );
+        app.add_systems(Update, grow.chain().in_set(WindwoodSystems::Grow));
     }
 }

@@ -5,7 +5,7 @@ use super::{
     clock::{WindClock, advance_clock},
     current::{ActiveWind, Wind, fade_field, rebuild_field, receive_field},
 };
-use crate::schedule::WindwoodSystems;
+use crate::{schedule::WindwoodSystems, timing::timed};
 use bevy::prelude::*;
 
 /// The wind, without trees: [`Wind`], [`WindClock`], [`ActiveWind`] and [`WindCell`]s.
@@ -18,12 +18,14 @@ impl Plugin for WindPlugin {
             .register_type::<WindClock>()
             .init_resource::<Wind>()
             .init_resource::<WindClock>()
-            .insert_resource(ActiveWind::calm())
-            .add_systems(
-                PreUpdate,
-                (advance_clock, rebuild_field, receive_field, fade_field, sample_wind_cells)
-                    .chain()
-                    .in_set(WindwoodSystems::AdvanceWind),
-            );
+            .insert_resource(ActiveWind::calm());
+        let advance = (
+            timed(app, "advance_clock", advance_clock),
+            timed(app, "rebuild_field", rebuild_field),
+            timed(app, "receive_field", receive_field),
+            timed(app, "fade_field", fade_field),
+            timed(app, "sample_wind_cells", sample_wind_cells),
+        );
+        app.add_systems(PreUpdate, advance.chain().in_set(WindwoodSystems::AdvanceWind));
     }
 }

@@ -9,15 +9,12 @@ use crate::{
     forest::cells::{ForestCells, reaching},
     scatter::Planted,
     setting::SettingError,
-    sway::DrawPath,
+    sway::{CulledOnGpu, DrawPath},
     tree::growth::age::Age,
     viewpoint::Viewpoints,
 };
 use bevy::{
-    camera::{
-        primitives::Aabb,
-        visibility::{NoAutoAabb, NoCpuCulling},
-    },
+    camera::{primitives::Aabb, visibility::NoAutoAabb},
     platform::collections::HashMap,
     prelude::*,
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
@@ -248,7 +245,7 @@ impl FarBlocks {
                     NoAutoAabb,
                 ));
                 if path.culls_on_gpu {
-                    spawned.insert(NoCpuCulling);
+                    spawned.insert(CulledOnGpu);
                 }
                 block.meshes.push(spawned.id());
             }

@@ -7,18 +7,34 @@ use super::{
     near::{NearCells, tell_near_cells},
 };
 use crate::{
-    forest::cells::plant_cells,
+    forest::{
+        cells::plant_cells,
+        cull::{ForestCulling, cull_cells, measure_species},
+        diagnose::ForestGizmoPlugin,
+    },
     schedule::WindwoodSystems,
     sway::{DrawPath, StandTables},
+    timing::timed,
 };
-use bevy::{asset::embedded_asset, pbr::MaterialPlugin, prelude::*, render::RenderApp, shader::load_shader_library};
+use bevy::{
+    asset::embedded_asset, camera::visibility::VisibilitySystems, pbr::MaterialPlugin, prelude::*, render::RenderApp,
+    shader::load_shader_library,
+};
 
-/// Draws the trees of [`Forest`](crate::forest::Forest)s that are too far to be entities. Needs
-/// [`SwayDrawPlugin`](crate::sway::SwayDrawPlugin). Without a renderer it does nothing.
+/// Draws the trees of [`Forest`](crate::forest::Forest)s that are too far to be entities, and hides near ones that nobody
+/// sees. Needs [`SwayDrawPlugin`](crate::sway::SwayDrawPlugin). Without a renderer it only culls.
 pub struct ForestDrawPlugin;
 
 impl Plugin for ForestDrawPlugin {
     fn build(&self, app: &mut App) {
+        let cull = (timed(app, "measure_species", measure_species), timed(app, "cull_cells", cull_cells));
+        app.add_plugins(ForestGizmoPlugin)
+            .register_type::<ForestCulling>()
+            .init_resource::<ForestCulling>()
+            .add_systems(
+                PostUpdate,
+                cull.chain().after(VisibilitySystems::UpdateFrusta).before(VisibilitySystems::VisibilityPropagate),
+            );
         if app.get_sub_app(RenderApp).is_none() {
             return;
         }
@@ -29,8 +45,10 @@ impl Plugin for ForestDrawPlugin {
         let can_draw = resource_exists::<DrawPath>.and_then(resource_exists::<StandTables>);
         app.add_plugins(MaterialPlugin::<FarMaterial>::default())
             .init_resource::<NearCells>()
-            .init_resource::<FarLooks>()
-            .add_systems(Update, (bake_far_looks, stream_far).chain().after(plant_cells).run_if(can_draw))
-            .add_systems(PostUpdate, tell_near_cells.before(WindwoodSystems::Upload));
+            .init_resource::<FarLooks>();
+        let stream = (timed(app, "bake_far_looks", bake_far_looks), timed(app, "stream_far", stream_far));
+        let tell = timed(app, "tell_near_cells", tell_near_cells);
+        app.add_systems(Update, stream.chain().after(plant_cells).run_if(can_draw))
+            .add_systems(PostUpdate, tell.before(WindwoodSystems::Upload));
     }
 }

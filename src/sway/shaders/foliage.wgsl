@@ -14,12 +14,22 @@
 #endif
 #endif
 
+#ifdef WINDWOOD_ENVELOPE
+#import bevy_windwood::season
+#endif
+
 #import bevy_pbr::pbr_functions::visibility_range_dither
 
 @fragment
 fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
     visibility_range_dither(in.position, in.visibility_range_dither);
     var pbr_input = pbr_input_from_standard_material(in, is_front);
+#ifdef WINDWOOD_ENVELOPE
+    if !season::is_left(in.uv, in.color.a) {
+        discard;
+    }
+    pbr_input.material.base_color.a /= max(in.color.a, 1e-3);
+#endif
 #ifdef WINDWOOD_LEAVES
     if !leaf::is_billow() {
         // The alpha of the vertices is no transparency here, and is taken out again.
@@ -40,6 +50,10 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
 #endif
     let summer = pbr_input.material.base_color.rgb;
     pbr_input.material.base_color = vec4(season::recoloured(summer, in.uv_b.x, in.uv_b.y), pbr_input.material.base_color.a);
+#endif
+#ifdef WINDWOOD_ENVELOPE
+    let summer = pbr_input.material.base_color.rgb;
+    pbr_input.material.base_color = vec4(season::recoloured(summer, in.uv_b.x, in.uv_b.y), 1.0);
 #endif
     var out: FragmentOutput;
     out.color = apply_pbr_lighting(pbr_input);

@@ -11,6 +11,10 @@
 #import bevy_windwood::{leaf, season}
 #endif
 
+#ifdef WINDWOOD_ENVELOPE
+#import bevy_windwood::season
+#endif
+
 fn cut_out(in: prepass_io::VertexOutput) {
     pbr_functions::visibility_range_dither(in.position, in.visibility_range_dither);
 #ifdef VERTEX_UVS_A
@@ -23,6 +27,11 @@ fn cut_out(in: prepass_io::VertexOutput) {
         discard;
     }
 #else
+#ifdef WINDWOOD_ENVELOPE
+    if !season::is_left(in.uv, in.color.a) {
+        discard;
+    }
+#endif
 #ifdef MAY_DISCARD
     if textureSampleBias(base_color_texture, base_color_sampler, in.uv, view.mip_bias).a < material.alpha_cutoff {
         discard;

@@ -98,6 +98,14 @@ fn is_there(texel: vec3<f32>, uv: vec2<f32>, share: f32, texels: f32) -> bool {
     return share > 0.999 || is_twig || share > 0.02 + 0.96 * cell_rank(uv);
 }
 
+// Places of an envelope of leaves, each way, that go bare one by one.
+const PLACES_ACROSS: f32 = 24.0;
+
+// Whether a place of an envelope has leaves when that share of them is there.
+fn is_left(uv: vec2<f32>, share: f32) -> bool {
+    return share > 0.999 || share > 0.02 + 0.96 * cell_rank(uv * (PLACES_ACROSS / LEAVES_ACROSS));
+}
+
 // A texel of a leaf in summer, as it is in another season. `change` is youth (negative) or autumn (positive), `tone` where
 // between the two autumn colours. Light and dark of the texel stay.
 fn recoloured(summer: vec3<f32>, change: f32, tone: f32) -> vec3<f32> {

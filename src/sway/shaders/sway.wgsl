@@ -13,6 +13,10 @@
 #import bevy_windwood::season
 #endif
 
+#ifdef WINDWOOD_ENVELOPE
+#import bevy_windwood::season
+#endif
+
 #ifdef PREPASS_PIPELINE
 #import bevy_pbr::prepass_io::VertexOutput
 #else
@@ -24,6 +28,10 @@ struct Vertex {
     @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) uv: vec2<f32>,
+#ifdef WINDWOOD_ENVELOPE
+    // x: images of the sequence, one below another in the texture.
+    @location(3) sequence: vec2<f32>,
+#endif
     // x: beam; y: place on it, 0..1; z: phase of the leaf, 0..1; w: light that reaches this depth of the crown, 0..1.
     @location(8) sway: vec4<f32>,
 #ifdef WINDWOOD_LEAVES
@@ -140,9 +148,19 @@ fn vertex(in: Vertex) -> VertexOutput {
 
 #ifdef VERTEX_UVS_A
     out.uv = in.uv;
+#ifdef WINDWOOD_ENVELOPE
+    out.uv.y = (image_of(in, tag, tree) + mix(BORDER, 1.0 - BORDER, in.uv.y)) / in.sequence.x;
+#endif
 #endif
 
+#ifdef WINDWOOD_ENVELOPE
+    let own = f32(tag >> TINT_BIT) / 255.0 - 0.5;
+    let state = season::leaves(fract(frame.year + beam::season_shift(tree)), own, 0.5);
+#endif
 #ifdef VERTEX_UVS_B
+#ifdef WINDWOOD_ENVELOPE
+    out.uv_b = vec2(state.autumn - state.youth, saturate(0.5 + 1.5 * own));
+#endif
 #ifdef WINDWOOD_LEAVES
     // Youth (negative) or autumn (positive), and where between the autumn's two colours.
     out.uv_b = vec2(state.autumn - state.youth, saturate(0.5 + 1.5 * lag_of(in, tag) + 0.5 * (in.sway.z - 0.5)));
@@ -166,6 +184,9 @@ fn vertex(in: Vertex) -> VertexOutput {
 
 #ifdef VERTEX_COLORS
     out.color = vec4(shade(in, tag), 1.0);
+#ifdef WINDWOOD_ENVELOPE
+    out.color.a = state.size;
+#endif
 #ifdef WINDWOOD_LEAVES
     // Billows: what the mask is multiplied with. Sprays: how much of the leaves is there.
     let outline = leaf::silhouette_alpha(dot(normal, direction_to_eye(out.world_position.xyz)));
@@ -196,6 +217,22 @@ fn vertex(in: Vertex) -> VertexOutput {
     }
     return out;
 }
+
+#ifdef WINDWOOD_ENVELOPE
+// Images a second, the least wind that moves them, m/s, and how far the texture keeps from the border of an image.
+const IMAGES_PER_S: f32 = 4.0;
+const LEAST_WIND_M_S: f32 = 0.5;
+const BORDER: f32 = 0.02;
+
+// The image of the sequence that a tree shows now: each tree begins with another.
+fn image_of(in: Vertex, tag: u32, tree: beam::TreeRow) -> f32 {
+    let wind = poses[frame.poses_now + tree.first_pose + tree.beam_count].tip_angle.xyz;
+    if length(wind) < LEAST_WIND_M_S {
+        return 0.0;
+    }
+    return f32((u32(frame.leaf_time.x * IMAGES_PER_S) + (tag >> TINT_BIT)) % u32(in.sequence.x));
+}
+#endif
 
 #ifdef VERTEX_TANGENTS
 // The tangent needs no vertex attribute. Bark is wound around its beam: u runs around, v along. A spray's twig runs along
