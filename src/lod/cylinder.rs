@@ -6,18 +6,25 @@
 //! is drawn, too: what a ray misses on this side is looked for on the other by the texture of that side, so that the crown
 //! is as dense as it should be when both faces of the envelope are drawn.
 //!
-//! All vertices hang on the stem: the envelope "oscillates as the main trunk of the high resolution model does". The paper
-//! also deforms the texture, by a set of images; this does not.
+//! Its animation has two phases. All vertices hang on the stem: the envelope "oscillates as the main trunk of the high
+//! resolution model does". And "the deformation of the texture is obtained by generating a set of images of the high
+//! resolution representation in different positions of the animation sequence": the texture holds images of even moments
+//! of a sway that repeats itself. They show only what moves relative to the stem, all other branches with the leaves that
+//! ride on them, in the gusts of a fresh breeze (Beaufort 5, 9.4 m/s, with a turbulence intensity of 0.2), by the beams'
+//! own gain; each branch has a phase and a heading of its own, so that the images suit winds from all sides. Leaves do not
+//! flutter.
 
-use bevy::math::Vec3;
+use bevy::math::{Vec2, Vec3};
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::PI;
 
 use super::{
+    breeze,
     film::Film,
     profile::{CrownProfile, crown_points},
-    scene::{Scene, Sight},
+    scene::Scene,
     settings::CylinderSettings,
+    spin::{Spin, around},
     stem::Stem,
 };
 use crate::{
@@ -28,7 +35,7 @@ use crate::{
 /// How high the ends of the envelope bulge, in radii of the last ring, and how far into the texture they mirror it.
 const CAP_RISE: f32 = 0.3;
 const CAP_TEXTURE: f32 = 0.12;
-/// The texture has mips until its shorter side is so many texels.
+/// The texture has mips until the shorter side of an image is so many texels.
 const LEAST_TEXELS: usize = 4;
 
 /// The medium level of one tree.
@@ -40,14 +47,19 @@ pub struct CylinderLevel {
     pub envelope: EnvelopeVertices,
     /// The cone of the trunk; the bark's own textures fit it.
     pub trunk: WoodVertices,
-    /// What the envelope wears, u around (it repeats), v from the top down: colour, sRGB, spread beyond the leaves; in alpha
-    /// the share of rays that hit something before the axis, bent so that the cut-off of
-    /// [a mask](crate::texture::MASK_CUT_OFF) keeps that share in every mip.
+    /// Images in both textures, below one another: image `k` is of the moment `k / images` of the sway, and the first
+    /// follows on the last. A single image is of the tree at rest.
+    pub images: u32,
+    /// What the envelope wears, in each image u around (it repeats), v from the top down: colour, sRGB, spread beyond the
+    /// leaves; in alpha the share of rays that hit something before the axis, bent so that the cut-off of
+    /// [a mask](crate::texture::MASK_CUT_OFF) keeps that share in every mip of every image. As high as all images are; no
+    /// texel of any mip knows of another image, so only a filter can mix them ([`place_in`](Self::place_in)).
     pub colour: TextureData,
-    /// Linear: in red and green the [place](super::place_of_normal) of the tree-local normal, in blue the distance from the
-    /// axis as a share of the greatest, in alpha the share of the species' translucency (0 for wood).
+    /// Linear, in the same places: in red and green the [place](super::place_of_normal) of the tree-local normal, in blue
+    /// the distance from the axis as a share of the greatest at rest, in alpha the share of the species' translucency (0
+    /// for wood).
     pub surface: TextureData,
-    /// Share of rays that hit something.
+    /// Share of rays that hit something, of all images.
     pub cover: f32,
     /// Mean colour of what they hit, linear.
     pub mean_colour: [f32; 3],
@@ -60,7 +72,7 @@ pub struct EnvelopeVertices {
     pub positions: Vec<[f32; 3]>,
     /// Unit normals of the smooth envelope.
     pub normals: Vec<[f32; 3]>,
-    /// Once around, and from the top (0) to the base (1).
+    /// Once around, and from the top (0) to the base (1) of any one image.
     pub uvs: Vec<[f32; 2]>,
     /// Index of a beam of the stem (whole), place on it 0..1, phase (0), ambient light (1: it is in the texture).
     pub sway: Vec<[f32; 4]>,
@@ -69,19 +81,20 @@ pub struct EnvelopeVertices {
 }
 
 impl CylinderLevel {
-    /// Fits the envelope and looks at the tree from all around; none where there is no crown.
+    /// Fits the envelope and looks at the tree from all around, at each moment of its sway; none where there is no crown.
+    /// The `scene` is of the `model` at rest.
     #[must_use]
     pub fn bake(scene: &Scene, species: &Species, model: &TreeModel, settings: &CylinderSettings) -> Option<Self> {
         let points = crown_points(model);
         let profile = CrownProfile::around(&points, settings.stretches as usize, settings.enclosed)?;
         let stem = Stem::of(&model.skeleton);
-        let film = spin(scene, &profile, settings);
+        let film = sequence(scene, model, &profile, settings);
         let (cover, mean_colour) = (film.cover(), film.colour());
-        let (width, height) = (film.width, film.height);
-        let developed = film.developed(width, height, LEAST_TEXELS);
+        let developed = film.developed(settings.width_texels as usize, settings.height_texels as usize, LEAST_TEXELS);
         Some(Self {
             envelope: envelope(&profile, &stem, settings),
             trunk: stem.cone(species.wood.bark.tile_m),
+            images: settings.images,
             colour: developed.colour,
             surface: developed.surface,
             profile,
@@ -89,36 +102,32 @@ impl CylinderLevel {
             mean_colour,
         })
     }
+
+    /// Where a place `uv` of the envelope lies in the textures, in an image of the sequence (it repeats). In `mip` and all
+    /// finer ones a linear filter there takes nothing of other images: v keeps half a texel of the mip from the border.
+    #[must_use]
+    pub fn place_in(&self, image: u32, uv: Vec2, mip: u32) -> Vec2 {
+        let coarsest = self.colour.mips.len() as u32 - 1;
+        let texel = self.images as f32 / (self.colour.height >> mip.min(coarsest)) as f32;
+        let v = uv.y.clamp(0.5 * texel, 1.0 - 0.5 * texel);
+        Vec2::new(uv.x, ((image % self.images) as f32 + v) / self.images as f32)
+    }
 }
 
-/// The cylindrical projection, by a camera that turns around the tree.
-fn spin(scene: &Scene, profile: &CrownProfile, settings: &CylinderSettings) -> Film {
-    let (width, height) = (settings.width_texels as usize, settings.height_texels as usize);
+/// The cylindrical projections of all moments, below one another.
+pub(super) fn sequence(scene: &Scene, model: &TreeModel, profile: &CrownProfile, settings: &CylinderSettings) -> Film {
+    let tile = [settings.width_texels, settings.height_texels].map(|texels| texels as usize);
     let rays = settings.rays as usize;
-    let axis = Vec3::new(profile.axis.x, 0.0, profile.axis.y);
-    let from_axis_m = |point: Vec3| (point - axis).with_y(0.0).length();
-    let reach_m = scene.corners.iter().map(|corner| from_axis_m(corner.position)).fold(0.0, f32::max) + 0.1;
-    let mut film = Film::new(width, height);
-    let share = 1.0 / (rays * rays) as f32;
-    for column in 0..width * rays {
-        let outwards = around((column as f32 + 0.5) / (width * rays) as f32);
-        for row in 0..height * rays {
-            let down = (row as f32 + 0.5) / (height * rays) as f32;
-            let height_m = profile.top_m + (profile.base_m - profile.top_m) * down;
-            let from = axis + outwards * reach_m + Vec3::Y * height_m;
-            if let Some(hit) = scene.cast(from, -outwards, reach_m, Sight::Crown) {
-                let out = (1.0 - hit.distance_m / reach_m).clamp(0.0, 1.0);
-                film.texels[row / rays * width + column / rays].add(&hit.sample(out), share);
-            }
-        }
+    let from_axis_m = |point: Vec3| Vec2::new(point.x, point.z).distance(profile.axis);
+    let reach_m = scene.corners.iter().map(|corner| from_axis_m(corner.position)).fold(0.0, f32::max);
+    let mut film = Film::new(tile[0], tile[1] * settings.images as usize);
+    for image in 0..settings.images {
+        let posed = scene.posed(model, &breeze::poses(model, image, settings.images));
+        let spin = Spin::new(&posed, profile, tile.map(|texels| texels * rays));
+        let corner = [0, image as usize * tile[1]];
+        film.record(corner, tile, rays, |column, row| spin.sample(column, row, reach_m));
     }
     film
-}
-
-/// The way out of the axis at a share of the turn; counter-clockwise from above, so that u runs to the right outside.
-fn around(share: f32) -> Vec3 {
-    let (sin, cos) = (TAU * share).sin_cos();
-    Vec3::new(cos, 0.0, -sin)
 }
 
 fn envelope(profile: &CrownProfile, stem: &Stem, settings: &CylinderSettings) -> EnvelopeVertices {

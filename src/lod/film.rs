@@ -102,6 +102,25 @@ impl Film {
         Self { width, height, texels: vec![Texel::default(); width * height] }
     }
 
+    /// Records what each ray of a tile saw, by its column and row: `per_texel` x `per_texel` rays to a texel.
+    pub(super) fn record(
+        &mut self,
+        [left, top]: [usize; 2],
+        [width, height]: [usize; 2],
+        per_texel: usize,
+        seen: impl Fn(usize, usize) -> Option<Sample>,
+    ) {
+        let share = 1.0 / (per_texel * per_texel) as f32;
+        for row in 0..height * per_texel {
+            let first = (top + row / per_texel) * self.width + left;
+            for column in 0..width * per_texel {
+                if let Some(sample) = seen(column, row) {
+                    self.texels[first + column / per_texel].add(&sample, share);
+                }
+            }
+        }
+    }
+
     /// Share of all rays that hit something.
     pub(super) fn cover(&self) -> f32 {
         self.texels.iter().map(|texel| texel.cover).sum::<f32>() / self.texels.len() as f32
@@ -127,7 +146,7 @@ impl Film {
     }
 
     /// Makes textures of a film of tiles of `tile_width` x `tile_height` texels, powers of two, with mips until a tile's
-    /// shorter side is `least` texels. No mip mixes tiles. Of each tile in each mip as many texels pass the mask's cut-off
+    /// shorter side is `least` texels. Nothing mixes tiles: each is as if it had been developed alone. Of each tile in each mip as many texels pass the mask's cut-off
     /// as rays hit the tree.
     pub(super) fn developed(self, tile_width: usize, tile_height: usize, least: usize) -> Developed {
         let (width, height) = (self.width as u32, self.height as u32);

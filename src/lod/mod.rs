@@ -7,13 +7,14 @@
 //! - [`simplify`]: the tree's own meshes without thin branches, and with fewer but larger sprays of leaves.
 //! - [`cylinder`]: the paper's *medium* level, a cone for the trunk and an envelope of leaves that wears a translucent
 //!   cylindrical projection of the tree, ray-traced by a camera that turns around it ([`scene`]). It oscillates as the
-//!   trunk does.
+//!   trunk does, and its texture is a sequence of images of the crown's sway.
 //! - [`plain`]: the paper's *low* level, four plain polygons that stand still.
 //! - [`views`]: an atlas of parallel projections from all over the upper hemisphere, three of which are blended towards
 //!   any eye.
 //!
 //! [`levels`] makes them all, in about a tenth of a second: not on the frame.
 
+mod breeze;
 mod chart;
 pub mod cylinder;
 mod film;
@@ -25,6 +26,7 @@ mod projection;
 pub mod scene;
 pub mod settings;
 pub mod simplify;
+mod spin;
 mod stem;
 pub mod views;
 

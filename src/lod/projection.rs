@@ -8,7 +8,7 @@ use bevy::math::{Vec2, Vec3};
 use std::ops::Range;
 
 use super::{
-    film::{Film, Sample},
+    film::Sample,
     scene::{Scene, Sight},
     views::ViewBasis,
 };
@@ -49,14 +49,14 @@ impl<'a> Projection<'a> {
             *projected = Vec3::new(from.dot(right), from.dot(down), from.dot(forward)) + middle;
         }
         self.nearest.fill(NOTHING);
-        for triangle in 0..self.scene.triangles.len() {
+        for triangle in 0..self.scene.triangles().len() {
             self.cover(triangle, basis.forward);
         }
     }
 
     /// Finds the rays that a triangle stops.
     fn cover(&mut self, triangle: usize, forward: Vec3) {
-        let [a, b, c] = self.scene.triangles[triangle].map(|corner| self.corners[corner as usize]);
+        let [a, b, c] = self.scene.triangles()[triangle].map(|corner| self.corners[corner as usize]);
         let low = a.min(b).min(c);
         let high = a.max(b).max(c);
         // Rays run through the middle of their cells: from the first that is not before `low` to the last before `high`.
@@ -95,23 +95,10 @@ impl<'a> Projection<'a> {
         (seen.depth < f32::INFINITY)
             .then(|| self.scene.hit(seen.triangle as usize, seen.at, 0.0).sample(seen.depth.clamp(0.0, 1.0)))
     }
-
-    /// Records all rays on a square of a film, `per_texel` x `per_texel` to a texel.
-    pub(super) fn expose(&self, film: &mut Film, left: usize, top: usize, per_texel: usize) {
-        let share = 1.0 / (per_texel * per_texel) as f32;
-        for y in 0..self.rays {
-            let row = (top + y / per_texel) * film.width + left;
-            for x in 0..self.rays {
-                if let Some(sample) = self.sample(x, y) {
-                    film.texels[row + x / per_texel].add(&sample, share);
-                }
-            }
-        }
-    }
 }
 
 /// Those of the numbers x for which none of the three `start + step x` is negative.
-fn within(start: [f32; 3], step: [f32; 3], numbers: &Range<usize>) -> Range<usize> {
+pub(super) fn within(start: [f32; 3], step: [f32; 3], numbers: &Range<usize>) -> Range<usize> {
     let (mut low, mut high) = (numbers.start as f32, numbers.end as f32 - 1.0);
     for (start, step) in start.into_iter().zip(step) {
         let root = -start / step;

@@ -11,14 +11,20 @@ use obvhs::{
     ray::{Ray, RayHit},
     triangle::Triangle,
 };
-use std::time::Duration;
+use std::{
+    sync::{Arc, OnceLock},
+    time::Duration,
+};
 
 use super::{
     film::Sample,
     paint::{Gate, Paint, blend, mixed},
 };
-use crate::tree::{
-    Species, TreeModel, growth::Growth, leaf_mesh::LeafVertices, mesh::WoodVertices, painting::SpeciesTextures,
+use crate::{
+    dynamics::pose::BeamPose,
+    tree::{
+        Species, TreeModel, growth::Growth, leaf_mesh::LeafVertices, mesh::WoodVertices, painting::SpeciesTextures,
+    },
 };
 
 /// The mip of the foliage that is seen from afar: the coarsest that the renderer uses (`FOLIAGE_LOD_LIMIT` of
@@ -54,10 +60,17 @@ pub struct Hit {
 /// A tree, ready for rays.
 pub struct Scene {
     pub(super) corners: Vec<Corner>,
-    /// Of the wood first, then of the leaves.
-    pub(super) triangles: Vec<[u32; 3]>,
     /// For each triangle its first corner, and the ways from there to the second and the third, m.
-    facets: Vec<[Vec3; 3]>,
+    pub(super) facets: Vec<[Vec3; 3]>,
+    fabric: Arc<Fabric>,
+    /// Sorted for the first single ray: whole projections need none.
+    boxes: OnceLock<Bvh2>,
+}
+
+/// What stays as it is when a tree sways.
+struct Fabric {
+    /// Of the wood first, then of the leaves.
+    triangles: Vec<[u32; 3]>,
     wood_triangles: usize,
     /// For each triangle of the wood, whether it belongs to a stem.
     of_stem: Vec<bool>,
@@ -65,7 +78,6 @@ pub struct Scene {
     foliage: Paint,
     /// Whether leaves grow transparent towards their outline: Gardner's ellipsoids.
     is_billow: bool,
-    boxes: Bvh2,
 }
 
 /// A vertex of either mesh.
@@ -78,7 +90,7 @@ pub(super) struct Corner {
 }
 
 impl Scene {
-    /// Sorts the triangles of a model of `species` that wears `textures`.
+    /// A model of `species` at rest that wears `textures`.
     #[must_use]
     pub fn new(species: &Species, model: &TreeModel, textures: &SpeciesTextures) -> Self {
         let mut corners = wood_corners(&model.wood);
@@ -90,21 +102,35 @@ impl Scene {
         let beams = &model.skeleton.beams;
         let is_stem = |corner: &u32| beams[model.wood.sway[*corner as usize][0] as usize].order == 0;
         let of_stem = triangles[..wood_triangles].iter().map(|triple| triple.iter().all(is_stem)).collect();
-        let facet = |triple: &[u32; 3]| {
-            let [a, b, c] = triple.map(|corner| corners[corner as usize].position);
-            [a, b - a, c - a]
-        };
-        Self {
-            facets: triangles.iter().map(facet).collect(),
-            boxes: boxes(&corners, &triangles),
-            corners,
+        let fabric = Fabric {
             triangles,
             wood_triangles,
             of_stem,
             bark: Paint::new(&textures.bark.base_colour, None, BARK_MIP),
             foliage: Paint::new(&textures.foliage, textures.foliage_normal.as_ref(), FOLIAGE_MIP),
             is_billow: matches!(species.growth, Growth::Gardner(_)),
-        }
+        };
+        Self::of_corners(corners, Arc::new(fabric))
+    }
+
+    fn of_corners(corners: Vec<Corner>, fabric: Arc<Fabric>) -> Self {
+        let facet = |triple: &[u32; 3]| {
+            let [a, b, c] = triple.map(|corner| corners[corner as usize].position);
+            [a, b - a, c - a]
+        };
+        Self { facets: fabric.triangles.iter().map(facet).collect(), corners, fabric, boxes: OnceLock::new() }
+    }
+
+    /// The same tree with its beams in other poses, one for each beam of the `model` at rest that `self` is of. Leaves
+    /// ride on their beams.
+    pub(super) fn posed(&self, model: &TreeModel, poses: &[BeamPose]) -> Self {
+        let carried = |(corner, sway): (&Corner, &[f32; 4])| {
+            let beam = sway[0] as usize;
+            let (position, rotation) = poses[beam].carry(&model.beams[beam], sway[1], corner.position);
+            Corner { position, normal: rotation * corner.normal, ..*corner }
+        };
+        let bound_to = model.wood.sway.iter().chain(&model.leaves.sway);
+        Self::of_corners(self.corners.iter().zip(bound_to).map(carried).collect(), Arc::clone(&self.fabric))
     }
 
     /// The first thing on a ray's way: from a point, along a unit vector, up to a distance, m.
@@ -112,8 +138,9 @@ impl Scene {
     pub fn cast(&self, from: Vec3, direction: Vec3, reach_m: f32, sight: Sight) -> Option<Hit> {
         let ray = Ray::new(from.to_array().into(), direction.to_array().into(), 0.0, reach_m);
         let mut nearest = RayHit::none();
-        self.boxes.ray_traverse(ray, &mut nearest, |ray, slot| {
-            let triangle = self.boxes.primitive_indices[slot] as usize;
+        let boxes = self.boxes.get_or_init(|| boxes(&self.facets));
+        boxes.ray_traverse(ray, &mut nearest, |ray, slot| {
+            let triangle = boxes.primitive_indices[slot] as usize;
             match self.meet(triangle, from, direction) {
                 Some((distance_m, at))
                     if (0.0..ray.tmax).contains(&distance_m) && self.stops(triangle, at, direction, sight) =>
@@ -126,12 +153,16 @@ impl Scene {
         if nearest.t >= reach_m {
             return None;
         }
-        let triangle = self.boxes.primitive_indices[nearest.primitive_id as usize] as usize;
+        let triangle = boxes.primitive_indices[nearest.primitive_id as usize] as usize;
         self.meet(triangle, from, direction).map(|(distance_m, at)| self.hit(triangle, at, distance_m))
     }
 
+    pub(super) fn triangles(&self) -> &[[u32; 3]] {
+        &self.fabric.triangles
+    }
+
     pub(super) fn is_leaf(&self, triangle: usize) -> bool {
-        triangle >= self.wood_triangles
+        triangle >= self.fabric.wood_triangles
     }
 
     /// Where a ray meets the plane of a triangle inside it: the distance, m, and the shares of its second and third
@@ -154,12 +185,12 @@ impl Scene {
     /// What decides whether a triangle stops rays, or lets them through a gap between leaves.
     pub(super) fn gate(&self, triangle: usize, sight: Sight) -> Gate<'_> {
         if !self.is_leaf(triangle) {
-            return if sight == Sight::Tree || !self.of_stem[triangle] { Gate::Shut } else { Gate::Open };
+            return if sight == Sight::Tree || !self.fabric.of_stem[triangle] { Gate::Shut } else { Gate::Open };
         }
         let corners = self.corners_of(triangle);
         let uvs = corners.map(|corner| corner.uv);
-        let normals = self.is_billow.then(|| corners.map(|corner| corner.normal));
-        Gate::Leaf { mask: &self.foliage, uvs, normals }
+        let normals = self.fabric.is_billow.then(|| corners.map(|corner| corner.normal));
+        Gate::Leaf { mask: &self.fabric.foliage, uvs, normals }
     }
 
     pub(super) fn stops(&self, triangle: usize, at: [f32; 2], direction: Vec3, sight: Sight) -> bool {
@@ -171,7 +202,7 @@ impl Scene {
         let corners = self.corners_of(triangle);
         let uv = blend(corners.map(|corner| corner.uv), at);
         let is_leaf = self.is_leaf(triangle);
-        let paint = if is_leaf { &self.foliage } else { &self.bark };
+        let paint = if is_leaf { &self.fabric.foliage } else { &self.fabric.bark };
         let texel = if is_leaf { paint.clamped(uv) } else { paint.repeated(uv) };
         let shade = blend(corners.map(|corner| corner.shade), at);
         Hit {
@@ -187,17 +218,17 @@ impl Scene {
     pub(super) fn stem_colour(&self) -> [f32; 3] {
         let mut sum = [0.0; 3];
         let mut count = 0.0_f32;
-        for (triple, _) in self.triangles.iter().zip(&self.of_stem).filter(|(_, of_stem)| **of_stem) {
+        for (triple, _) in self.triangles().iter().zip(&self.fabric.of_stem).filter(|(_, of_stem)| **of_stem) {
             let shade = self.corners[triple[0] as usize].shade;
             (0..3).for_each(|channel| sum[channel] += shade[channel]);
             count += 1.0;
         }
-        let bark = self.bark.mean();
+        let bark = self.fabric.bark.mean();
         std::array::from_fn(|channel| bark[channel] * sum[channel] / count.max(1.0))
     }
 
     fn corners_of(&self, triangle: usize) -> [&Corner; 3] {
-        self.triangles[triangle].map(|corner| &self.corners[corner as usize])
+        self.fabric.triangles[triangle].map(|corner| &self.corners[corner as usize])
     }
 }
 
@@ -209,10 +240,10 @@ impl Hit {
 }
 
 /// The fastest build that is not lazy: a tree is cast at for a few milliseconds only.
-fn boxes(corners: &[Corner], triangles: &[[u32; 3]]) -> Bvh2 {
-    let solids: Vec<Triangle> = triangles
+fn boxes(facets: &[[Vec3; 3]]) -> Bvh2 {
+    let solids: Vec<Triangle> = facets
         .iter()
-        .map(|triple| triple.map(|corner| corners[corner as usize].position.to_array().into()))
+        .map(|[a, ab, ac]| [*a, *a + *ab, *a + *ac].map(|corner| corner.to_array().into()))
         .map(|[v0, v1, v2]| Triangle { v0, v1, v2 })
         .collect();
     build_bvh2_from_tris(&solids, BvhBuildParams::fast_build(), &mut Duration::default())

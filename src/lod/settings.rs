@@ -36,8 +36,10 @@ pub struct Reduction {
 pub struct CylinderSettings {
     /// Texels around the crown: a power of two, 8 to 1024.
     pub width_texels: u32,
-    /// Texels along its height: a power of two, 8 to 1024.
+    /// Texels along its height, in each image: a power of two, 8 to 1024.
     pub height_texels: u32,
+    /// Images in the sequence of its sway: 1 (at rest) to 16.
+    pub images: u32,
     /// Rays of a texel, each way: 1 to 8.
     pub rays: u32,
     /// Share of the crown that the envelope, while it is smooth, encloses: 0.5 to 1.
@@ -90,6 +92,7 @@ impl Default for CylinderSettings {
         Self {
             width_texels: 128,
             height_texels: 64,
+            images: 4,
             rays: 2,
             enclosed: 0.95,
             sides: 12,
@@ -136,6 +139,7 @@ impl CylinderSettings {
     fn validate(&self) -> Result<(), SettingError> {
         require_power_of_two("width_texels", self.width_texels, 8..=1024)?;
         require_power_of_two("height_texels", self.height_texels, 8..=1024)?;
+        require("images", self.images as f32, 1.0..=16.0)?;
         require("rays", self.rays as f32, 1.0..=8.0)?;
         require("enclosed", self.enclosed, 0.5..=1.0)?;
         require("sides", self.sides as f32, 3.0..=64.0)?;
@@ -178,6 +182,12 @@ mod tests {
         settings.cylinder.enclosed = f32::NAN;
         let error = settings.validate().unwrap_err().to_string();
         assert_eq!(error, "`cylinder.enclosed` is NaN, but must be 0.5 to 1");
+        settings.cylinder.images = 17;
+        let error = settings.validate().unwrap_err().to_string();
+        assert_eq!(error, "`cylinder.images` is 17, but must be 1 to 16");
+        settings.cylinder.images = 0;
+        let error = settings.validate().unwrap_err().to_string();
+        assert_eq!(error, "`cylinder.images` is 0, but must be 1 to 16");
         settings.reductions[1].leaf_share = 0.0;
         let error = settings.validate().unwrap_err().to_string();
         assert_eq!(error, "`reductions[1].leaf_share` is 0, but must be 0.02 to 1");

@@ -31,6 +31,11 @@ impl<'a> Stem<'a> {
         Self { skeleton, chain }
     }
 
+    /// Indices of its beams.
+    pub(super) fn chain(&self) -> &[usize] {
+        &self.chain
+    }
+
     fn beams(&self) -> impl Iterator<Item = (usize, &SkeletonBeam)> {
         self.chain.iter().map(|&index| (index, &self.skeleton.beams[index]))
     }

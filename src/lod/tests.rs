@@ -8,6 +8,7 @@ use crate::{
 use bevy::math::{UVec2, Vec2, Vec3};
 use std::{fs, path::Path};
 
+mod images;
 mod oracles;
 
 /// A species that is shipped, at a share of its mature age, and what it wears.

@@ -160,7 +160,8 @@ pub(super) fn expose(scene: &Scene, settings: &ViewSettings, frame: &ViewFrame) 
     for (row, column) in (0..across).flat_map(|row| (0..across).map(move |column| (row, column))) {
         let basis = ViewBasis::of_view(UVec2::new(column, row), across);
         projection.look(&basis, frame.centre, frame.half_m(&basis));
-        projection.expose(&mut film, column as usize * tile, row as usize * tile, per_texel);
+        let corner = [column as usize * tile, row as usize * tile];
+        film.record(corner, [tile, tile], per_texel, |x, y| projection.sample(x, y));
     }
     film
 }

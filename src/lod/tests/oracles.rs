@@ -10,7 +10,7 @@ use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 /// Tries every triangle of a scene.
 fn tried_all(scene: &Scene, from: Vec3, direction: Vec3, reach_m: f32, sight: Sight) -> Option<Hit> {
     let mut nearest: Option<Hit> = None;
-    for triangle in 0..scene.triangles.len() {
+    for triangle in 0..scene.triangles().len() {
         let Some((distance_m, at)) = scene.meet(triangle, from, direction) else { continue };
         let is_nearer = distance_m < nearest.map_or(reach_m, |hit| hit.distance_m);
         if distance_m >= 0.0 && is_nearer && scene.stops(triangle, at, direction, sight) {
