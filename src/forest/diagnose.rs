@@ -45,11 +45,7 @@ impl Plugin for ForestDiagnosticsPlugin {
     }
 }
 
-fn count_forest(
-    forests: Query<(&ForestCells, Option<&FarBlocks>)>,
-    trees: TreesByLevel,
-    mut diagnostics: Diagnostics,
-) {
+fn count_forest(forests: Query<(&ForestCells, Option<&FarBlocks>)>, trees: TreesByLevel, mut diagnostics: Diagnostics) {
     let mut add = |path: &DiagnosticPath, value: usize| diagnostics.add_measurement(path, || value as f64);
     let sum = |of: fn(&ForestCells) -> usize| forests.iter().map(|(forest, _)| of(forest)).sum();
     add(&CELLS_PLANTED, sum(|forest| forest.store().len()));
