@@ -16,8 +16,9 @@ use std::{
 /// Longest that wind and trees may take to get ready.
 const PATIENCE: Duration = Duration::from_secs(600);
 
-/// Frames that are drawn before the first picture.
-const WARM_UP_FRAMES: usize = 3;
+/// Frames that are drawn before the first picture: pipelines and instances of what is seen for the first time take frames of
+/// their own, and so do the levels of trees that a camera looks at for the first time.
+const WARM_UP_FRAMES: usize = 6;
 
 /// Renders the pictures that the options ask for.
 pub fn render(mut app: App, options: &Options) -> ExitCode {
@@ -34,7 +35,10 @@ fn run(app: &mut App, options: &Options) -> Result<(), String> {
     std::fs::create_dir_all(&options.out).map_err(|error| format!("{}: {error}", options.out.display()))?;
     let begun = Instant::now();
     capture::begin(app)?;
-    let target = spawn_camera(app, options);
+    // Until all is there somebody stands where the camera will be, so that nothing has to be drawn meanwhile.
+    let place = camera_transform(app.world().resource::<Setting>());
+    let watcher = app.world_mut().spawn((Viewpoint, place)).id();
+    app.world_mut().resource_mut::<LevelOfDetail>().changes_per_frame = 1_000_000;
     while !is_ready(app.world_mut(), options)? {
         app.update();
         if begun.elapsed() > PATIENCE {
@@ -42,7 +46,8 @@ fn run(app: &mut App, options: &Options) -> Result<(), String> {
         }
         std::thread::sleep(Duration::from_millis(5));
     }
-    // Pipelines and instances of what is seen for the first time take frames of their own.
+    app.world_mut().despawn(watcher);
+    let target = spawn_camera(app, options);
     (0..WARM_UP_FRAMES).for_each(|_| capture::step(app));
     println!("ready after {:.1} s", begun.elapsed().as_secs_f32());
 

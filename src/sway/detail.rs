@@ -24,6 +24,8 @@ pub struct LevelOfDetail {
     pub distances: LevelDistances,
     /// Over this share of a distance, to either side, one level fades into the next. domain: \[0.02, 0.3\].
     pub fade: f32,
+    /// Trees that change their level in a frame, at most; each takes some microseconds. domain: \[1, 1000000\].
+    pub changes_per_frame: u32,
 }
 
 /// What stands for a tree that is too small on screen to be drawn in full.
@@ -40,7 +42,7 @@ pub enum LevelStyle {
 
 impl Default for LevelOfDetail {
     fn default() -> Self {
-        Self { style: LevelStyle::default(), distances: LevelDistances::default(), fade: 0.1 }
+        Self { style: LevelStyle::default(), distances: LevelDistances::default(), fade: 0.1, changes_per_frame: 128 }
     }
 }
 
@@ -51,7 +53,8 @@ impl LevelOfDetail {
     /// The first field outside its domain.
     pub fn validate(&self) -> Result<(), SettingError> {
         self.distances.validate().map_err(|error| error.inside("distances"))?;
-        require("fade", self.fade, 0.02..=0.3)
+        require("fade", self.fade, 0.02..=0.3)?;
+        require("changes_per_frame", self.changes_per_frame as f32, 1.0..=1e6)
     }
 }
 
@@ -136,6 +139,10 @@ impl Sight {
     /// From the nearest viewer, m; where nobody looks, 0.
     pub fn distance_m(&self, place: Vec3) -> f32 {
         self.eyes.iter().map(|eye| eye.distance(place)).reduce(f32::min).unwrap_or(0.0)
+    }
+
+    pub fn changes_per_frame(&self) -> usize {
+        self.in_force.changes_per_frame as usize
     }
 
     pub fn style(&self) -> LevelStyle {

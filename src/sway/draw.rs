@@ -79,9 +79,6 @@ impl TreesByLevel<'_, '_> {
     }
 }
 
-/// Trees that change their level in a frame, at most; each takes some microseconds.
-const CHANGES_PER_FRAME: usize = 128;
-
 /// Puts the meshes and materials of its model on every tree that has got a new one.
 pub(super) fn dress_trees(
     mut commands: Commands,
@@ -155,7 +152,7 @@ pub(super) fn choose_levels(
     if !std::mem::take(&mut sight.bypass_change_detection().is_due) {
         return;
     }
-    let mut left = CHANGES_PER_FRAME;
+    let mut left = sight.changes_per_frame();
     for (entity, tree, grown, at, mut worn, standing, children, card_behind) in &mut trees {
         let scale = at.affine().matrix3.y_axis.length();
         let levels = worn.choose(&sight, at.translation(), scale, standing.is_some(), Some(worn.levels));

@@ -7,6 +7,7 @@ use super::{
     draw::{DrawPath, choose_levels, dress_trees},
     looks::{SpeciesDressed, Tailoring, Wardrobe, finish_tailoring, start_tailoring},
     material::SwayMaterial,
+    mend,
     rouse::{calm_meshes, rouse_meshes},
     rows::POSE_BYTES,
     stand::{Stand, dismiss_tree, place_trees},
@@ -44,7 +45,7 @@ impl Plugin for SwayDrawPlugin {
         embedded_asset!(app, "shaders/pose.wgsl");
         embedded_asset!(app, "shaders/sway.wgsl");
         give_cameras_viewpoints(app);
-        app.add_plugins((MaterialPlugin::<SwayMaterial>::default(), compute::plugin))
+        app.add_plugins((MaterialPlugin::<SwayMaterial>::default(), compute::plugin, mend::plugin))
             .init_resource::<StandBuffers>()
             .init_resource::<StandTables>()
             .init_resource::<PoseJob>()

@@ -28,6 +28,8 @@ mod looks;
 #[cfg(feature = "render")]
 mod material;
 #[cfg(feature = "render")]
+mod mend;
+#[cfg(feature = "render")]
 mod outfits;
 #[cfg(feature = "render")]
 mod rouse;
