@@ -8,7 +8,7 @@ use super::{
     looks::{SpeciesDressed, Tailoring, Wardrobe, finish_tailoring, start_tailoring},
     material::SwayMaterial,
     mend,
-    rouse::{calm_meshes, rouse_meshes},
+    rouse::{Roused, recall_meshes, rouse_meshes},
     rows::POSE_BYTES,
     stand::{Stand, dismiss_tree, place_trees},
     upload::{StandBuffers, StandTables, upload_frame, upload_winds},
@@ -16,6 +16,7 @@ use super::{
 use crate::{schedule::WindwoodSystems, timing::timed, tree::receive_models, viewpoint::give_cameras_viewpoints};
 use bevy::{
     asset::embedded_asset,
+    camera::visibility::VisibilitySystems,
     pbr::MaterialPlugin,
     prelude::*,
     render::{
@@ -59,7 +60,16 @@ impl Plugin for SwayDrawPlugin {
             .add_message::<SpeciesDressed>()
             .add_observer(dismiss_tree)
             .configure_sets(PostUpdate, WindwoodSystems::Upload.after(TransformSystems::Propagate))
-            .add_systems(Update, (rouse_meshes, calm_meshes));
+            .init_resource::<Roused>()
+            .add_systems(
+                PostUpdate,
+                (
+                    recall_meshes.before(VisibilitySystems::VisibilityPropagate),
+                    rouse_meshes
+                        .after(VisibilitySystems::VisibilityPropagate)
+                        .before(VisibilitySystems::CheckVisibility),
+                ),
+            );
         let dress = (
             timed(app, "look_about", look_about),
             timed(app, "start_tailoring", start_tailoring).after(receive_models),
