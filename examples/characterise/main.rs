@@ -16,6 +16,7 @@ mod map_picture;
 mod options;
 mod pattern_picture;
 mod points;
+#[path = "../support/sheet.rs"]
 mod sheet;
 mod terrain;
 mod variogram_chart;

@@ -5,12 +5,20 @@
 
 mod basis;
 mod beams;
+#[path = "../support/capture.rs"]
+mod capture;
+mod figure9;
+mod figure9_chart;
 mod parity;
 mod points;
 mod report;
+#[path = "../support/sheet.rs"]
+mod sheet;
 mod spectrum;
 mod terrain;
 mod trees;
+#[path = "../support/walk.rs"]
+mod walk;
 
 use clap::{Parser, ValueEnum};
 use std::{path::PathBuf, process::ExitCode};
@@ -32,6 +40,9 @@ enum Topic {
     Points,
     /// The trees against the papers' tables, their own settings, and real trees.
     Trees,
+    /// The paper's experiment: frame rate over number of trees, with and without voxel grid and levels of detail. Takes some
+    /// ten minutes on software Vulkan.
+    Figure9,
 }
 
 #[derive(Parser)]
@@ -42,10 +53,23 @@ struct Options {
     /// Writes the numbers to this file as flat JSON.
     #[arg(long)]
     json: Option<PathBuf>,
+    /// `figure9`: frames along the path for each curve and number of trees.
+    #[arg(long, default_value_t = 36, value_parser = clap::value_parser!(u32).range(2..=10_800))]
+    frames: u32,
+    /// `figure9`: the greatest number of trees.
+    #[arg(long, default_value_t = 10_000)]
+    trees: u32,
+    /// Folder for charts and pictures.
+    #[arg(long, default_value = "out")]
+    out: PathBuf,
 }
 
 fn main() -> ExitCode {
     let options = Options::parse();
+    if let Err(error) = std::fs::create_dir_all(&options.out) {
+        eprintln!("{}: {error}", options.out.display());
+        return ExitCode::FAILURE;
+    }
     let report = match options.topic {
         Topic::Spectrum => spectrum::run(),
         Topic::Basis => basis::run(),
@@ -54,6 +78,7 @@ fn main() -> ExitCode {
         Topic::Terrain => terrain::run(),
         Topic::Points => points::run(),
         Topic::Trees => trees::run(),
+        Topic::Figure9 => figure9::run(options.frames, options.trees, &options.out.join("figure9.png")),
     };
     report.print();
     if let Some(path) = options.json {

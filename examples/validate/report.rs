@@ -2,11 +2,28 @@
 
 use serde_json::{Map, Value, json};
 
+/// What the project holds a number to.
+#[derive(Clone, Copy)]
+enum Limit {
+    AtMost(f64),
+    AtLeast(f64),
+}
+
+impl Limit {
+    /// A NaN keeps no limit.
+    fn holds(self, value: f64) -> bool {
+        match self {
+            Self::AtMost(limit) => value <= limit,
+            Self::AtLeast(limit) => value >= limit,
+        }
+    }
+}
+
 /// One measured number.
 pub struct Figure {
     key: &'static str,
     value: f64,
-    limit: Option<f64>,
+    limit: Option<Limit>,
     note: &'static str,
 }
 
@@ -19,7 +36,12 @@ pub struct Report {
 impl Report {
     /// Adds a number that must not exceed `limit`.
     pub fn at_most(&mut self, key: &'static str, value: f64, limit: f64, note: &'static str) {
-        self.figures.push(Figure { key, value, limit: Some(limit), note });
+        self.figures.push(Figure { key, value, limit: Some(Limit::AtMost(limit)), note });
+    }
+
+    /// Adds a number that must reach `limit`.
+    pub fn at_least(&mut self, key: &'static str, value: f64, limit: f64, note: &'static str) {
+        self.figures.push(Figure { key, value, limit: Some(Limit::AtLeast(limit)), note });
     }
 
     /// Adds a number that is only reported.
@@ -27,19 +49,21 @@ impl Report {
         self.figures.push(Figure { key, value, limit: None, note });
     }
 
-    /// Whether every number keeps its limit. A NaN keeps none.
+    /// Whether every number keeps its limit.
     pub fn holds(&self) -> bool {
-        self.figures.iter().all(|figure| figure.limit.is_none_or(|limit| figure.value <= limit))
+        self.figures.iter().all(|figure| figure.limit.is_none_or(|limit| limit.holds(figure.value)))
     }
 
     /// Prints the numbers as a table.
     pub fn print(&self) {
         for Figure { key, value, limit, note } in &self.figures {
-            let verdict = match limit {
-                Some(limit) if value <= limit => format!("<= {limit:<8} ok"),
-                Some(limit) => format!("<= {limit:<8} MISSED"),
-                None => "reported".to_owned(),
-            };
+            let verdict = limit.map_or("reported".to_owned(), |kept| {
+                let (sign, limit) = match kept {
+                    Limit::AtMost(limit) => ("<=", limit),
+                    Limit::AtLeast(limit) => (">=", limit),
+                };
+                format!("{sign} {limit:<8} {}", if kept.holds(*value) { "ok" } else { "MISSED" })
+            });
             println!("{key:<34} {value:>12.5e}   {verdict:<19}  {note}");
         }
     }

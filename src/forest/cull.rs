@@ -22,16 +22,16 @@ pub struct ForestCulling {
     pub enabled: bool,
     /// Nearer to a camera than this nothing is hidden: what stands there may be lit by lamps. units: m.
     pub around_m: f32,
+    /// A cell that is seen no more stays for so many frames, so that looking about moves nothing to and fro.
+    pub lingering_frames: u8,
 }
 
 impl Default for ForestCulling {
     fn default() -> Self {
-        Self { enabled: true, around_m: 50.0 }
+        Self { enabled: true, around_m: 50.0, lingering_frames: 60 }
     }
 }
 
-/// Cells that are seen no more stay for so many frames.
-const LINGERING_FRAMES: u8 = 60;
 /// The shadows of a camera end at a depth, which in the corners of a wide picture lies farther away by up to this factor.
 const CORNERS: f32 = 1.6;
 
@@ -100,7 +100,7 @@ pub(super) fn cull_cells(
         views.extend(shadows.map(|(_, at, cascades)| View { sun: Some(sun(at, cascades)), ..view }));
     }
     for mut forest in &mut forests {
-        forest.bypass_change_detection().near.show_seen(*settings, views, LINGERING_FRAMES, |cell, shown| {
+        forest.bypass_change_detection().near.show_seen(*settings, views, |cell, shown| {
             if let Ok(mut visibility) = cells.get_mut(cell) {
                 let wanted = if shown { Visibility::Inherited } else { Visibility::Hidden };
                 visibility.set_if_neq(wanted);

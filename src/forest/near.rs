@@ -151,13 +151,7 @@ impl NearTrees {
 
     /// Looks at every cell, and tells by its entity whether it is to be shown.
     #[cfg(feature = "render")]
-    pub fn show_seen(
-        &mut self,
-        settings: ForestCulling,
-        views: &[View],
-        lingering_frames: u8,
-        mut show: impl FnMut(Entity, bool),
-    ) {
+    pub fn show_seen(&mut self, settings: ForestCulling, views: &[View], mut show: impl FnMut(Entity, bool)) {
         let Self { cells, reaches, cell_m, .. } = self;
         for (cell, there) in &mut cells.0 {
             let [min, max] = there.extent.corners(cell.as_vec2() * *cell_m, *cell_m, reaches);
@@ -166,7 +160,7 @@ impl NearTrees {
             // Where nobody looks, what is there stays.
             let seen = !settings.enabled || views.is_empty() || min.y > max.y || views.iter().any(is_seen);
             there.unseen_frames = if seen { 0 } else { there.unseen_frames.saturating_add(1) };
-            show(there.entity, there.unseen_frames <= lingering_frames);
+            show(there.entity, there.unseen_frames <= settings.lingering_frames);
         }
     }
 

@@ -1,4 +1,8 @@
-//! The sheet of paper that both subjects draw on: a title, two pictures side by side, and a chart under them.
+//! The sheet of paper that charts are drawn on: a title, and where there are any, two pictures side by side, and under them
+//! the chart.
+
+// Each of the examples uses a part of it.
+#![allow(dead_code)]
 
 use image::{RgbImage, imageops};
 use plotters::{
@@ -50,8 +54,6 @@ pub fn compose(
     chart_caption: &str,
     chart: impl FnOnce(&Area) -> Result<(), String>,
 ) -> Result<RgbImage, String> {
-    register_font("sans-serif", FontStyle::Normal, bevy::text::DEFAULT_FONT_DATA)
-        .map_err(|_| "the font for the picture cannot be read")?;
     let column_width = panels.iter().map(|panel| panel.picture.width()).fold(LEAST_COLUMN_WIDTH, u32::max);
     let picture_height = panels.iter().map(|panel| panel.picture.height()).max().unwrap_or(0);
     let width = 3 * MARGIN + 2 * column_width;
@@ -77,8 +79,23 @@ pub fn compose(
     Ok(sheet)
 }
 
+/// Draws a sheet with nothing but a title and a chart.
+///
+/// # Errors
+/// Where the plotting library refuses.
+pub fn chart(title: &str, chart: impl FnOnce(&Area) -> Result<(), String>) -> Result<RgbImage, String> {
+    let (width, height) =
+        (3 * MARGIN + LEAST_COLUMN_WIDTH + LEAST_COLUMN_WIDTH / 2, CHART_HEIGHT + TITLE_HEIGHT + 2 * MARGIN);
+    drawn(width, height, |paper| {
+        paper.draw_text(title, &style(TITLE, &INK), (pixels(MARGIN), pixels(MARGIN))).map_err(refused)?;
+        chart(&paper.margin(pixels(MARGIN + TITLE_HEIGHT), pixels(MARGIN), pixels(MARGIN), pixels(MARGIN)))
+    })
+}
+
 /// A picture of a size, on which `draw` has drawn.
 fn drawn(width: u32, height: u32, draw: impl FnOnce(&Area) -> Result<(), String>) -> Result<RgbImage, String> {
+    register_font("sans-serif", FontStyle::Normal, bevy::text::DEFAULT_FONT_DATA)
+        .map_err(|_| "the font for the picture cannot be read")?;
     let (fine_width, fine_height) = (width * DETAIL, height * DETAIL);
     let mut channels = vec![0; fine_width as usize * fine_height as usize * 3];
     {
