@@ -22,7 +22,7 @@ const AREA_PER_TREE_M2: f32 = 64.0;
 /// Side of a cell, m.
 const CELL_M: f32 = 32.0;
 /// With levels, trees are entities as far as this, m.
-const TREES_TO_M: f32 = 150.0;
+const TREES_TO_M: f32 = 120.0;
 /// From one turn of the path to the next, s.
 const LEG_S: f32 = 20.0;
 /// Height of the walker's eyes, m.

@@ -9,6 +9,7 @@ mod beams;
 mod capture;
 mod figure9;
 mod figure9_chart;
+mod levels;
 mod parity;
 mod points;
 mod report;
@@ -43,6 +44,8 @@ enum Topic {
     /// The paper's experiment: frame rate over number of trees, with and without voxel grid and levels of detail. Takes some
     /// ten minutes on software Vulkan.
     Figure9,
+    /// Every level of detail beside the full tree, and whether the eye can tell the change. Takes some minutes.
+    Levels,
 }
 
 #[derive(Parser)]
@@ -79,6 +82,7 @@ fn main() -> ExitCode {
         Topic::Points => points::run(),
         Topic::Trees => trees::run(),
         Topic::Figure9 => figure9::run(options.frames, options.trees, &options.out.join("figure9.png")),
+        Topic::Levels => levels::run(&options.out.join("levels.png")),
     };
     report.print();
     if let Some(path) = options.json {

@@ -66,6 +66,8 @@ pub(super) const NOWHERE_M: f32 = 1e30;
 const STEP_M: f32 = 0.5;
 /// By so much more than the fade itself a tree wears both levels, m: viewers move on before it changes.
 const SLACK_M: f32 = 3.0;
+/// `LADDER` of `shaders/beam.wgsl`.
+const LADDER: f32 = 1.17;
 /// The lens that is assumed where there is no camera.
 const COMMON_LENS: Lens = Lens { fov_rad: std::f32::consts::FRAC_PI_4, picture_px: 1080.0 };
 
@@ -76,6 +78,8 @@ pub(super) struct Ladder {
     pub ends: [f32; MOST_LEVELS],
     pub fade: f32,
     margin: f32,
+    /// Where cards begin, m.
+    pub cards_from_m: f32,
 }
 
 /// The levels that a tree wears.
@@ -84,10 +88,12 @@ pub(super) struct Levels {
     pub first: u8,
     /// Whether the level after it is worn as well.
     pub both: bool,
+    /// Whether a card stands for the tree, and nothing of it is drawn or posed.
+    pub gone: bool,
 }
 
 impl Ladder {
-    pub fn new(detail: &LevelOfDetail, lens: Lens) -> Self {
+    pub fn new(detail: &LevelOfDetail, lens: Lens, cards: CardRange) -> Self {
         let [high, medium, _] = detail.distances.switches(1.0, lens).at_m();
         let ends = match detail.style {
             // The second thinning begins half way, as the eye sees distances.
@@ -95,7 +101,8 @@ impl Ladder {
             LevelStyle::Paper => [high, medium, NOWHERE_M],
             LevelStyle::Full => [NOWHERE_M; MOST_LEVELS],
         };
-        Self { ends, fade: detail.fade, margin: detail.distances.margin }
+        let cards_from_m = cards.from_m.unwrap_or(NOWHERE_M);
+        Self { ends, fade: detail.fade, margin: detail.distances.margin, cards_from_m }
     }
 
     /// What a tree of a height, m, that has `count` levels wears at a distance, m, after what it has worn before.
@@ -103,16 +110,24 @@ impl Ladder {
         let last = count.saturating_sub(1).min(MOST_LEVELS as u8 - 1);
         for first in 0..last {
             let end_m = self.ends[usize::from(first)] * height_m;
-            let both = Levels { first, both: true };
+            let both = Levels { first, both: true, gone: false };
             let margin = if before == Some(both) { self.margin } else { 0.0 };
             if distance_m < (end_m * (1.0 - self.fade) - SLACK_M) * (1.0 - margin) {
-                return Levels { first, both: false };
+                return Levels { first, ..Levels::default() };
             }
             if distance_m < (end_m * (1.0 + self.fade) + SLACK_M) * (1.0 + margin) {
                 return both;
             }
         }
-        Levels { first: last, both: false }
+        Levels { first: last, ..Levels::default() }
+    }
+
+    /// The same for a tree with a card behind it.
+    pub fn choose_before_card(&self, distance_m: f32, height_m: f32, count: u8, before: Option<Levels>) -> Levels {
+        let levels = self.choose(distance_m, height_m, count, before);
+        let end_m = self.cards_from_m.min(self.ends[MOST_LEVELS - 1] * height_m * LADDER);
+        let margin = if before.is_some_and(|before| before.gone) { -self.margin } else { 0.0 };
+        Levels { gone: distance_m > (end_m * (1.0 + self.fade) + SLACK_M) * (1.0 + margin), ..levels }
     }
 }
 
@@ -130,7 +145,7 @@ pub(super) struct Sight {
 impl Default for Sight {
     fn default() -> Self {
         let in_force = LevelOfDetail::default();
-        let ladder = Ladder::new(&in_force, COMMON_LENS);
+        let ladder = Ladder::new(&in_force, COMMON_LENS, CardRange { from_m: None });
         Self { ladder, eyes: Vec::new(), looked_from: Vec::new(), is_due: false, in_force }
     }
 }
@@ -157,17 +172,12 @@ pub(crate) struct CardRange {
     pub from_m: Option<f32>,
 }
 
-impl CardRange {
-    pub(super) fn from_m(&self) -> f32 {
-        self.from_m.unwrap_or(NOWHERE_M)
-    }
-}
-
 /// Takes changed settings over, and notes where the viewers are.
 pub(super) fn look_about(
     wanted: Res<LevelOfDetail>,
     viewpoints: Viewpoints,
     cameras: Query<(&Camera, &Projection)>,
+    cards: Res<CardRange>,
     mut sight: ResMut<Sight>,
 ) {
     let sight = sight.bypass_change_detection();
@@ -180,7 +190,7 @@ pub(super) fn look_about(
     let pixels_at_1_m = |lens: &Lens| lens.picture_px / (0.5 * lens.fov_rad).tan();
     let lens = cameras.iter().filter(|(camera, _)| camera.is_active).filter_map(lens_of);
     let lens = lens.max_by(|a, b| pixels_at_1_m(a).total_cmp(&pixels_at_1_m(b))).unwrap_or(COMMON_LENS);
-    let ladder = Ladder::new(&sight.in_force, lens);
+    let ladder = Ladder::new(&sight.in_force, lens, *cards);
     sight.eyes.clear();
     sight.eyes.extend(viewpoints.iter());
     let rests = |(now, then): (&Vec3, &Vec3)| now.distance(*then) < STEP_M;
@@ -204,7 +214,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn ladder() -> Ladder {
-        Ladder::new(&LevelOfDetail::default(), COMMON_LENS)
+        Ladder::new(&LevelOfDetail::default(), COMMON_LENS, CardRange { from_m: Some(200.0) })
     }
 
     #[test]
@@ -237,7 +247,7 @@ mod tests {
                     let fades = (distance_m / end_m - 1.0).abs() < ladder.fade;
                     let others = |other: u8| other != end && (distance_m / (ladder.ends[usize::from(other)] * height_m) - 1.0).abs() < ladder.fade + 0.3;
                     if fades && !(0..2).any(others) {
-                        prop_assert_eq!(levels, Levels { first: end, both: true });
+                        prop_assert_eq!(levels, Levels { first: end, both: true, gone: false });
                     }
                 }
             }
@@ -255,6 +265,17 @@ mod tests {
             }
             prop_assert!(changes <= 1, "{} changes", changes);
         }
+    }
+
+    #[test]
+    fn a_tree_is_gone_only_where_its_card_is_whole() {
+        let ladder = ladder();
+        let gone = |distance_m, before| ladder.choose_before_card(distance_m, 20.0, 3, before).gone;
+        // Cards begin at 200 m, and are whole there.
+        assert!(!gone(200.0 * (1.0 + ladder.fade), None) && gone(230.0, None));
+        let before = Levels { first: 2, both: false, gone: true };
+        assert!(gone(220.0, Some(before)) && !gone(200.0, Some(before)));
+        assert!(!ladder.choose(1e6, 20.0, 3, None).gone);
     }
 
     #[test]

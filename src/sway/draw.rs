@@ -112,7 +112,8 @@ pub(super) fn dress_trees(
             height_m: variant.height_m,
             tint: tree.tint_byte(grown.seed) as u8,
         };
-        worn.levels = worn.choose(&sight, place, scale.y, standing.is_some(), None);
+        let fades = Fades { levels: standing.is_some(), into_card: card_behind };
+        worn.levels = worn.choose(&sight, place, scale.y, fades, None);
         // The old row, if there is one, is given back when the component goes.
         let mut tree = commands.entity(entity);
         tree.remove::<Standing>().insert(worn);
@@ -155,7 +156,8 @@ pub(super) fn choose_levels(
     let mut left = sight.changes_per_frame();
     for (entity, tree, grown, at, mut worn, standing, children, card_behind) in &mut trees {
         let scale = at.affine().matrix3.y_axis.length();
-        let levels = worn.choose(&sight, at.translation(), scale, standing.is_some(), Some(worn.levels));
+        let fades = Fades { levels: standing.is_some(), into_card: card_behind };
+        let levels = worn.choose(&sight, at.translation(), scale, fades, Some(worn.levels));
         if levels == worn.levels {
             continue;
         }
@@ -176,15 +178,27 @@ pub(super) fn choose_levels(
     }
 }
 
+/// What a tree can fade into.
+#[derive(Clone, Copy)]
+struct Fades {
+    levels: bool,
+    into_card: bool,
+}
+
 impl Worn {
     /// The levels at a distance; a tree whose material cannot fade wears one at a time.
-    fn choose(&self, sight: &Sight, place: Vec3, scale: f32, fades: bool, before: Option<Levels>) -> Levels {
-        let levels = sight.ladder.choose(sight.distance_m(place), self.height_m * scale, self.count, before);
-        if fades || !levels.both {
-            return levels;
+    fn choose(&self, sight: &Sight, place: Vec3, scale: f32, fades: Fades, before: Option<Levels>) -> Levels {
+        let (distance_m, height_m) = (sight.distance_m(place), self.height_m * scale);
+        if !fades.levels {
+            let levels = sight.ladder.choose(distance_m, height_m, self.count, before);
+            let first = before
+                .map_or(levels.first, |before| before.first.clamp(levels.first, levels.first + u8::from(levels.both)));
+            return Levels { first, both: false, gone: false };
         }
-        let first = before.map_or(levels.first, |before| before.first.clamp(levels.first, levels.first + 1));
-        Levels { first, both: false }
+        if fades.into_card {
+            return sight.ladder.choose_before_card(distance_m, height_m, self.count, before);
+        }
+        sight.ladder.choose(distance_m, height_m, self.count, before)
     }
 }
 
@@ -206,7 +220,11 @@ struct Dress<'a> {
 impl Dress<'_> {
     /// Puts the levels on: `before` is what the tree has worn, and the draw of its leaves.
     fn put_on(&self, before: Option<(Levels, Option<Entity>)>, commands: &mut Commands) {
-        let Levels { first, both } = self.worn.levels;
+        let Levels { first, both, gone } = self.worn.levels;
+        if before.map_or(gone, |(before, _)| before.gone != gone) {
+            let shown = if gone { Visibility::Hidden } else { Visibility::Inherited };
+            commands.entity(self.tree).insert(shown);
+        }
         let Some(level) = self.variant.levels.get(usize::from(first)) else { return };
         let same = before.filter(|(before, _)| before.first == first).is_some();
         let fading = if both { FADES_OUT } else { self.end_of(first) };

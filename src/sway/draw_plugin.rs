@@ -10,7 +10,7 @@ use super::{
     mend,
     rouse::{Roused, recall_meshes, rouse_meshes},
     rows::POSE_BYTES,
-    stand::{Stand, dismiss_tree, place_trees},
+    stand::{Stand, dismiss_tree, place_trees, wake_trees},
     upload::{StandBuffers, StandTables, upload_frame, upload_winds},
 };
 use crate::{schedule::WindwoodSystems, timing::timed, tree::receive_models, viewpoint::give_cameras_viewpoints};
@@ -81,6 +81,7 @@ impl Plugin for SwayDrawPlugin {
         let upload = (
             timed(app, "upload_winds", upload_winds),
             timed(app, "place_trees", place_trees),
+            timed(app, "wake_trees", wake_trees).after(VisibilitySystems::VisibilityPropagate),
             timed(app, "upload_frame", upload_frame),
         );
         app.add_systems(Update, dress).add_systems(PostUpdate, upload.chain().in_set(WindwoodSystems::Upload));

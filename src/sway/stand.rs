@@ -21,6 +21,8 @@ pub(super) struct Standing {
 #[derive(Resource, Default)]
 pub(super) struct Stand {
     rows: Vec<TreeRow>,
+    /// Beams of each row's tree, whether it is posed or not.
+    beams_of: Vec<u32>,
     row_places: Ranges,
     beams: Vec<BeamRow>,
     beam_places: Ranges,
@@ -71,6 +73,8 @@ impl Stand {
         let first_pose = self.poses.take(length);
         let row = self.row_places.take(1);
         self.rows.resize(self.row_places.end as usize, TreeRow::default());
+        self.beams_of.resize(self.row_places.end as usize, 0);
+        self.beams_of[row as usize] = model.count;
         self.rows[row as usize] = TreeRow { first_beam: model.first, beam_count: model.count, first_pose, ..default() };
         self.rows_changed = true;
         Some(Standing { row })
@@ -87,10 +91,20 @@ impl Stand {
         self.rows_changed = true;
     }
 
+    /// Has a tree posed, or no longer: nobody sees it.
+    fn wake(&mut self, standing: Standing, awake: bool) {
+        let Some(row) = self.rows.get_mut(standing.row as usize) else { return };
+        // A row without beams is skipped by the shaders.
+        let beam_count = if awake { self.beams_of[standing.row as usize] } else { 0 };
+        if row.beam_count != beam_count {
+            row.beam_count = beam_count;
+            self.rows_changed = true;
+        }
+    }
+
     fn dismiss(&mut self, standing: Standing) {
         let Some(row) = self.rows.get_mut(standing.row as usize) else { return };
-        self.poses.give_back(row.first_pose, row.beam_count + 1);
-        // A row without beams is skipped by the shaders.
+        self.poses.give_back(row.first_pose, self.beams_of[standing.row as usize] + 1);
         *row = TreeRow::default();
         self.row_places.give_back(standing.row, 1);
         self.rows_changed = true;
@@ -171,6 +185,18 @@ pub(super) fn place_trees(
     }
 }
 
+/// Has trees posed that come into sight, and no longer those that go: hidden ones, in cells that nobody sees, or with a card
+/// in their place.
+pub(super) fn wake_trees(
+    mut stand: ResMut<Stand>,
+    trees: Query<(&Standing, &InheritedVisibility), Or<(Changed<InheritedVisibility>, Added<Standing>)>>,
+) {
+    let stand = stand.bypass_change_detection();
+    for (standing, visibility) in &trees {
+        stand.wake(*standing, visibility.get());
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -202,6 +228,19 @@ mod tests {
         }
         assert_eq!((stand.pose_count(), stand.rows().len()), (poses, 100));
         assert!(stand.rows().iter().all(|row| row.beam_count == 0));
+    }
+
+    #[test]
+    fn who_sleeps_gives_back_what_it_had() {
+        let mut stand = Stand::default();
+        let id = AssetId::<TreeModel>::default();
+        stand.add_model(id, std::iter::repeat_n(BeamRow::default(), 7));
+        let tree = stand.admit(id, u32::MAX).unwrap();
+        stand.wake(tree, false);
+        assert_eq!(stand.rows()[0].beam_count, 0);
+        stand.dismiss(tree);
+        let next = stand.admit(id, u32::MAX).unwrap();
+        assert_eq!((stand.rows()[next.row as usize].beam_count, stand.pose_count()), (7, 8));
     }
 
     #[test]

@@ -4,7 +4,7 @@
 use super::{
     active::{ActiveSway, leaf_clock_s, wrapped_time_s},
     compute::PoseJob,
-    detail::{CardRange, Sight},
+    detail::Sight,
     draw::DrawPath,
     material::SwayMaterial,
     response::WindResponse,
@@ -178,7 +178,6 @@ pub(super) fn upload_frame(
     clock: Res<WindClock>,
     season: Res<Season>,
     sight: Res<Sight>,
-    cards: Res<CardRange>,
     mut stand: ResMut<Stand>,
     mut uploads: Uploads,
     mut job: ResMut<PoseJob>,
@@ -207,7 +206,7 @@ pub(super) fn upload_frame(
     let row = FrameRow {
         year: season.wrapped(),
         level_ends: sight.ladder.ends,
-        cards_from_m: cards.from_m(),
+        cards_from_m: sight.ladder.cards_from_m,
         fade: sight.ladder.fade,
         ..frame_row(&sway, &clock, shared, job.trees)
     };

@@ -61,7 +61,8 @@ fn job_of(id: vec3<u32>) -> Job {
 
 @compute @workgroup_size(WORKGROUP)
 fn find_tip_angles(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.y >= frame.tree_count || id.x > trees[id.y].beam_count {
+    // A row without beams is nobody's, or of a tree that nobody sees.
+    if id.y >= frame.tree_count || trees[id.y].beam_count == 0u || id.x > trees[id.y].beam_count {
         return;
     }
     let job = job_of(id);

@@ -1,0 +1,138 @@
+//! The levels of detail of each species beside the full trees, at the distances at which they change, in the wind: how much
+//! of the picture they cover, their colour, and whether the eye can tell the moment of the change from the wind's own motion.
+
+mod sheet;
+mod stand;
+
+use crate::report::Report;
+use image::RgbImage;
+use sheet::Sheet;
+use stand::{Shot, Stand};
+use std::path::Path;
+
+/// Species of all kinds of growth.
+const SPECIES: [&str; 8] =
+    ["oak", "fir", "birch", "norway_spruce", "scots_pine", "poplar", "billows", "impression_summer"];
+/// Moments of a fade at which a step of it is compared with the wind, as shares of its way.
+const MOMENTS: [f32; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+/// A step of the dither is a 16th of the fade, which takes a fifth of the distance.
+const STEP: f32 = 0.2 / 16.0;
+
+/// What is found of one change.
+#[derive(Default, Clone, Copy)]
+struct Found {
+    /// How much more or less of the picture the lower level covers, as a share of what the full tree covers.
+    coverage: f64,
+    /// How its mean colour differs, of 255.
+    colour: f64,
+    /// The greatest difference of two frames while it fades, over the wind's own from frame to frame.
+    pop: f64,
+    /// The difference if it changed at once, over the wind's own.
+    abrupt: f64,
+}
+
+pub fn run(picture: &Path) -> Report {
+    let mut sheet = Sheet::default();
+    let (mut worst, mut worst_paper) = (Found::default(), Found::default());
+    println!("{:<18} {:<22} {:>9} {:>9} {:>9} {:>9}", "species", "change", "coverage", "colour", "pop", "at once");
+    for species in SPECIES {
+        let mut stand = match Stand::new(species) {
+            Ok(stand) => stand,
+            Err(error) => {
+                eprintln!("{species}: {error}");
+                worst.pop = f64::NAN;
+                continue;
+            }
+        };
+        sheet.begin();
+        for change in 0..3 {
+            let found = ours(&mut stand, change, &mut sheet);
+            tell(species, ["full to thinned", "to sparse", "to card"][change], found);
+            worst = worst.worse(found);
+        }
+        for level in 0..2 {
+            let found = papers(&mut stand, level, &mut sheet);
+            tell(species, ["paper: envelope", "paper: four polygons"][level], found);
+            worst_paper = worst_paper.worse(found);
+        }
+    }
+    match sheet.save(picture) {
+        Ok(()) => println!("sheet: {}", picture.display()),
+        Err(error) => eprintln!("{}: {error}", picture.display()),
+    }
+    let mut report = Report::default();
+    report.at_most("pop_ratio_worst", worst.pop, 1.0, "a step of a fade over the wind's own motion in a frame");
+    report.tell("abrupt_ratio_worst", worst.abrupt, "the same if levels changed at once");
+    report.tell("coverage_difference_worst", worst.coverage, "of a lower level, as a share of the full tree's");
+    report.tell("colour_difference_worst", worst.colour, "of mean colours, of 255");
+    report.tell("paper_coverage_difference_worst", worst_paper.coverage, "the paper's levels");
+    report.tell("paper_colour_difference_worst", worst_paper.colour, "the paper's levels");
+    report
+}
+
+fn tell(species: &str, change: &str, Found { coverage, colour, pop, abrupt }: Found) {
+    println!("{species:<18} {change:<22} {coverage:>9.3} {colour:>9.1} {pop:>9.2} {abrupt:>9.2}");
+}
+
+/// One of the three changes of our own levels.
+fn ours(stand: &mut Stand, change: usize, sheet: &mut Sheet) -> Found {
+    stand.stand_back(stand.switching_px()[change]);
+    let full = stand.shoot(Shot::Full);
+    let later = stand.shoot_later(Shot::Full);
+    let finer = if change == 0 { full.clone() } else { stand.shoot(Shot::Level(change)) };
+    let coarser = stand.shoot(Shot::Level(change + 1));
+    sheet.add(&full, stand.crop());
+    sheet.add(&coarser, stand.crop());
+    let wind = difference(&full, &later);
+    let mut pop = 0.0_f64;
+    for moment in MOMENTS {
+        // A card comes before its tree goes: both fades lie one after the other.
+        let (from, way) = if change == 2 { (0.78, 0.6) } else { (0.9, 0.2) };
+        let at = from + way * moment;
+        let [before, after] = [at, at + STEP].map(|share| stand.shoot(Shot::Fading(change, share)));
+        pop = pop.max(difference(&before, &after) / wind);
+    }
+    Found { pop, abrupt: difference(&finer, &coarser) / wind, ..compare(&full, &coarser) }
+}
+
+/// One of the paper's lower levels.
+fn papers(stand: &mut Stand, level: usize, sheet: &mut Sheet) -> Found {
+    stand.stand_back(stand.switching_px()[2 * level]);
+    let full = stand.shoot(Shot::Full);
+    let lower = stand.shoot(Shot::Paper(level + 1));
+    sheet.add(&lower, stand.crop());
+    compare(&full, &lower)
+}
+
+impl Found {
+    fn worse(self, other: Self) -> Self {
+        Self {
+            coverage: self.coverage.max(other.coverage),
+            colour: self.colour.max(other.colour),
+            pop: if self.pop.is_nan() { self.pop } else { self.pop.max(other.pop) },
+            abrupt: self.abrupt.max(other.abrupt),
+        }
+    }
+}
+
+/// Coverage and colour of a level beside the full trees.
+fn compare(full: &RgbImage, level: &RgbImage) -> Found {
+    let (full, level) = (covered(full), covered(level));
+    let coverage = (level.0 / full.0.max(1.0) - 1.0).abs();
+    let apart = full.1.iter().zip(level.1).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+    Found { coverage, colour: (apart / 3.0).sqrt(), ..Found::default() }
+}
+
+/// Number of pixels that are not background, and their mean colour.
+fn covered(picture: &RgbImage) -> (f64, [f64; 3]) {
+    let drawn = || picture.pixels().filter(|pixel| !stand::is_background(pixel));
+    let count = drawn().count() as f64;
+    let mean = [0, 1, 2].map(|channel| drawn().map(|pixel| f64::from(pixel.0[channel])).sum::<f64>() / count.max(1.0));
+    (count, mean)
+}
+
+/// Mean difference of two pictures, of 255.
+fn difference(one: &RgbImage, other: &RgbImage) -> f64 {
+    let sum: u64 = one.iter().zip(other.iter()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    (sum as f64 / one.len() as f64).max(1e-6)
+}
