@@ -8,6 +8,7 @@ mod beams;
 mod parity;
 mod points;
 mod report;
+mod scale;
 mod spectrum;
 mod terrain;
 mod trees;
@@ -30,6 +31,8 @@ enum Topic {
     Terrain,
     /// Point patterns against their laws, and the laws of real patterns.
     Points,
+    /// What a frame costs in forests of ten thousand trees to a million.
+    Scale,
     /// The trees against the papers' tables, their own settings, and real trees.
     Trees,
 }
@@ -53,6 +56,7 @@ fn main() -> ExitCode {
         Topic::Parity => parity::run(),
         Topic::Terrain => terrain::run(),
         Topic::Points => points::run(),
+        Topic::Scale => scale::run(),
         Topic::Trees => trees::run(),
     };
     report.print();
