@@ -3,7 +3,11 @@
 mod support;
 
 use bevy::render::render_resource::WgpuLimits;
-use support::firs::{TREES, draw_firs};
+use bevy_windwood::{forest::FarBlocks, prelude::*, sway::DrawPath};
+use support::{
+    firs::{TREES, draw_firs},
+    wood::Wood,
+};
 
 #[test]
 fn trees_sway_where_bevy_does_not_cull_on_the_device() {
@@ -22,4 +26,15 @@ fn trees_beyond_the_room_for_poses_stand_still() {
     let [wood, leaves] = outcome.swaying;
     assert!(0 < wood && wood < TREES && leaves == wood, "{:?} {:?}", outcome.path, outcome.swaying);
     assert!(outcome.covered > 0.15, "{} of the picture is trees", outcome.covered);
+}
+
+#[test]
+fn a_forest_has_all_its_levels_where_bevy_does_not_cull_on_the_device() {
+    let settings = ForestSettings { trees_to_m: 100.0, far_to_m: 400.0, ..ForestSettings::default() };
+    let mut wood = Wood::new(settings, Some(WgpuLimits::default()));
+    let covered = wood.covered();
+    let world = wood.app.world_mut();
+    assert!(!world.resource::<DrawPath>().culls_on_gpu);
+    assert!(world.query::<&FarBlocks>().iter(world).any(|blocks| blocks.trees() > 100));
+    assert!(covered > 0.1, "{covered} of the picture is trees");
 }

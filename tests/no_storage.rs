@@ -4,7 +4,8 @@
 mod support;
 
 use bevy::render::render_resource::WgpuLimits;
-use support::firs::draw_firs;
+use bevy_windwood::{forest::FarBlocks, prelude::*};
+use support::{firs::draw_firs, wood::Wood};
 
 #[test]
 fn trees_stand_still_without_storage_buffers() {
@@ -13,4 +14,14 @@ fn trees_stand_still_without_storage_buffers() {
     assert!(!outcome.path.sways, "{:?}", outcome.path);
     assert_eq!(outcome.swaying, [0, 0]);
     assert!(outcome.covered > 0.15, "{} of the picture is trees", outcome.covered);
+}
+
+#[test]
+fn a_forest_stands_still_and_has_no_cards_without_storage_buffers() {
+    let settings = ForestSettings { trees_to_m: 150.0, far_to_m: 400.0, ..ForestSettings::default() };
+    let mut wood = Wood::new(settings, Some(WgpuLimits::downlevel_webgl2_defaults()));
+    let covered = wood.covered();
+    let world = wood.app.world_mut();
+    assert_eq!(world.query::<&FarBlocks>().iter(world).count(), 0);
+    assert!(covered > 0.1, "{covered} of the picture is trees");
 }

@@ -5,6 +5,9 @@
 //! W, A, S, D, Q, E and the mouse, change the wind with the arrow keys. Without a display, or with `--headless`, pictures
 //! are written instead.
 //!
+//! With `--trees 1000000 --extent 10000` the forest is a plan over ten kilometres: trees near the camera, cards beyond, and
+//! at last a colour of the ground; a hamlet stands in its midst.
+//!
 //! `cargo run --example forest -- --help` lists the options.
 
 #[path = "../support/arguments.rs"]
@@ -20,6 +23,7 @@ mod landscape;
 mod options;
 mod planting;
 mod scene;
+mod wide;
 
 use bevy::prelude::*;
 use bevy_windwood::prelude::*;

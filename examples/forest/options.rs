@@ -9,8 +9,18 @@ use std::path::PathBuf;
 #[command(about = "A hillside forest in a turbulent wind. Flies in a window, or renders pictures where there is none.")]
 pub struct Options {
     /// Number of trees.
-    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u32).range(0..=200_000))]
+    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u32).range(0..=4_000_000))]
     pub trees: u32,
+    /// Side of the square that they stand in, m: beyond a few thousand trees the forest grows about the camera as it flies, and
+    /// has more species, a hamlet and a meadow.
+    #[arg(long, value_parser = extent)]
+    pub extent: Option<f32>,
+    /// With `--extent`: trees stand as far as this from the camera, m.
+    #[arg(long, default_value_t = 200.0, value_parser = trees_to)]
+    pub trees_to: f32,
+    /// With `--extent`: beyond, they are drawn as cards as far as this; farther, the forest is a colour of the ground, m.
+    #[arg(long, default_value_t = 6000.0, value_parser = far_to)]
+    pub far_to: f32,
     /// Another seed is another forest in another wind.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
@@ -65,4 +75,16 @@ pub enum View {
 
 fn cell_size(text: &str) -> Result<f32, String> {
     in_range(text, 0.01, 10_000.0, "m")
+}
+
+fn extent(text: &str) -> Result<f32, String> {
+    in_range(text, 200.0, 50_000.0, "m")
+}
+
+fn trees_to(text: &str) -> Result<f32, String> {
+    in_range(text, 0.0, 2000.0, "m")
+}
+
+fn far_to(text: &str) -> Result<f32, String> {
+    in_range(text, 0.0, 20_000.0, "m")
 }

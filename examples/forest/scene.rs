@@ -4,10 +4,15 @@ use crate::{
     daylight::{self, spawn_daylight},
     landscape::{FINEST_CELL_M, Landscape},
     options::{Options, View},
-    planting,
+    planting, wide,
 };
 use bevy::{pbr::DistanceFog, prelude::*};
-use bevy_windwood::{prelude::*, terrain::TerrainChunks};
+use bevy_windwood::{
+    forest::{FarBlocks, ForestCells},
+    prelude::*,
+    scatter::ForestPlan,
+    terrain::TerrainChunks,
+};
 
 /// What pictures of it are called.
 pub fn name(_: &Options) -> &'static str {
@@ -30,6 +35,9 @@ pub fn wind_direction(ground: &Landscape) -> Dir2 {
 /// Where the camera stands for a view.
 pub fn camera_transform(setting: &Setting) -> Transform {
     let Setting { options, ground } = setting;
+    if options.extent.is_some() {
+        return wide::camera_transform(ground);
+    }
     let uphill = *ground.uphill();
     let half = planting::half_side_m(options.trees);
     let on_ground = |at: Vec2, height: f32| Vec3::new(at.x, ground.height_m(at.x, at.y) + height, at.y);
@@ -58,6 +66,14 @@ pub fn is_ready(world: &mut World, options: &Options) -> Result<bool, String> {
     if let Some(tree) = world.query::<&Tree>().iter(world).find(|tree| assets.load_state(&tree.species).is_failed()) {
         return Err(format!("{:?} could not be loaded; the reason stands above", tree.species.path()));
     }
+    if options.extent.is_some() {
+        let cells = world.query::<&ForestCells>().iter(world).any(ForestCells::is_complete);
+        let far = options.far_to == 0.0 || world.query::<&FarBlocks>().iter(world).any(FarBlocks::is_complete);
+        let bald = world.query_filtered::<(), (With<GrassPatch>, Without<Mesh3d>)>().iter(world).count();
+        if !cells || !far || bald > 0 {
+            return Ok(false);
+        }
+    }
     let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
     let trees = world.query_filtered::<(), With<Tree>>().iter(world).count();
     let planted = trees > 0 || options.trees == 0;
@@ -72,13 +88,26 @@ pub fn build(
     assets: Res<AssetServer>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
+    mut plans: ResMut<Assets<ForestPlan>>,
 ) {
     let Setting { options, ground } = &*setting;
-    let places = planting::places(ground, options.trees, options.seed);
-    planting::plant(&mut commands, &assets, &places);
+    let mut cover = None;
+    let mut look = GroundLook::default();
+    if let Some(extent_m) = options.extent {
+        let plan = wide::plan(options, extent_m);
+        cover = wide::cover(&plan, ground);
+        let settings = wide::settings(options, extent_m);
+        look.canopy_from_m = settings.far_to_m.max(settings.trees_to_m);
+        commands.spawn((Forest::new(plans.add(plan)), settings));
+        wide::spawn_hamlet(&mut commands, &mut meshes, &mut materials, ground);
+    } else {
+        let places = planting::places(ground, options.trees, options.seed);
+        planting::plant(&mut commands, &assets, &places);
+    }
     let finest_cell_m = FINEST_CELL_M;
     commands.spawn((
-        Terrain { ground: ground.ground.clone(), cover: None },
+        Terrain { ground: ground.ground.clone(), cover },
+        look,
         TerrainSettings { finest_cell_m, reach_m: 14_000.0, chunks_per_frame: 64, builds_at_once: 64, ..default() },
     ));
     let sky = (Vec3::Y * ground.height_m(0.0, 0.0), 40_000.0);

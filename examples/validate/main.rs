@@ -13,6 +13,7 @@ mod levels;
 mod parity;
 mod points;
 mod report;
+mod scale;
 #[path = "../support/sheet.rs"]
 mod sheet;
 mod spectrum;
@@ -39,6 +40,8 @@ enum Topic {
     Terrain,
     /// Point patterns against their laws, and the laws of real patterns.
     Points,
+    /// What a frame costs in forests of ten thousand trees to a million.
+    Scale,
     /// The trees against the papers' tables, their own settings, and real trees.
     Trees,
     /// The paper's experiment: frame rate over number of trees, with and without voxel grid and levels of detail. Takes some
@@ -80,6 +83,7 @@ fn main() -> ExitCode {
         Topic::Parity => parity::run(),
         Topic::Terrain => terrain::run(),
         Topic::Points => points::run(),
+        Topic::Scale => scale::run(),
         Topic::Trees => trees::run(),
         Topic::Figure9 => figure9::run(options.frames, options.trees, &options.out.join("figure9.png")),
         Topic::Levels => levels::run(&options.out.join("levels.png")),

@@ -28,4 +28,4 @@ pub use level::CellLevels;
 pub use query::{Found, RayHit, Trunk};
 pub use store::CellStore;
 pub use stream::{CellSet, CellStream, Orders, StreamSettings, Viewpoint};
-pub use view::{Seen, Sun, TreeExtent, View};
+pub use view::{Seen, Sun, TreeExtent, View, Watch};

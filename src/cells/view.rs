@@ -94,15 +94,6 @@ impl CellStore {
     }
 }
 
-impl View {
-    /// How a box with these corners, m, is seen: in view itself (true), or only by its shadow (false); `None` where neither
-    /// is.
-    pub fn sees(&self, min: Vec3, max: Vec3) -> Option<bool> {
-        let bounds = Bounds { centre: 0.5 * (min + max), half: 0.5 * (max - min) };
-        Watch::new(self).sight(&bounds, ALL_PLANES).map(|sight| sight.in_view)
-    }
-}
-
 impl TreeExtent {
     fn bounded(self) -> Self {
         Self { height_m: bounded(self.height_m, LARGEST_M), reach_m: bounded(self.reach_m, LARGEST_M) }
@@ -114,7 +105,8 @@ type Planes = u8;
 const ALL_PLANES: Planes = 0b11_1111;
 
 /// A view made ready for questions.
-struct Watch {
+#[derive(Clone, Copy, Debug)]
+pub struct Watch {
     planes: [Vec4; 6],
     eye_m: Vec3,
     distance_m: f32,
@@ -130,7 +122,20 @@ struct Sight {
 }
 
 impl Watch {
-    fn new(view: &View) -> Self {
+    /// How a box with these corners, m, is seen: in view itself (true), or only by its shadow (false); `None` where neither
+    /// is.
+    pub fn sees(&self, min: Vec3, max: Vec3) -> Option<bool> {
+        let bounds = Bounds { centre: 0.5 * (min + max), half: 0.5 * (max - min) };
+        self.sight(&bounds, ALL_PLANES).map(|sight| sight.in_view)
+    }
+
+    /// Where the eye is, m.
+    pub fn eye_m(&self) -> Vec3 {
+        self.eye_m
+    }
+
+    /// Makes a view ready.
+    pub fn new(view: &View) -> Self {
         // Everything is in front of this one.
         let nowhere = Vec4::new(0.0, 0.0, 0.0, 1.0);
         let planes = view.planes.map(|plane| if plane.is_finite() { plane } else { nowhere });

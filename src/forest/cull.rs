@@ -5,7 +5,7 @@
 
 use super::{cells::ForestCells, components::ForestCell};
 use crate::{
-    cells::{Sun, View},
+    cells::{Sun, View, Watch},
     tree::{Grove, TreeModel},
 };
 use bevy::{
@@ -43,8 +43,7 @@ pub(super) fn measure_species(grove: Res<Grove>, models: Res<Assets<TreeModel>>,
             continue;
         }
         let (near, species, _) = forest.bypass_change_detection().parts();
-        near.reaches.clear();
-        near.reaches.extend(species.iter().map(|species| {
+        near.measure(species.iter().map(|species| {
             let stages = grove.get(species.id()).into_iter().flat_map(|entry| entry.stages.values());
             let models = stages.flat_map(|stage| &stage.models).filter_map(|model| models.get(model));
             models.fold(Reach::default(), |reach, model| reach.with(model.bounds.min, model.bounds.max))
@@ -75,7 +74,7 @@ impl Reach {
 
 /// What is looked with in this frame: one view for each camera and sun.
 #[derive(Default)]
-pub(super) struct Views(Vec<View>);
+pub(super) struct Views(Vec<Watch>);
 
 /// Shows the near cells that are seen, and hides those that are not.
 pub(super) fn cull_cells(
@@ -95,9 +94,9 @@ pub(super) fn cull_cells(
             distance_m: f32::MAX,
             sun: None,
         };
-        views.push(view);
+        views.push(Watch::new(&view));
         let shadows = suns.iter().filter(|(light, ..)| light.shadow_maps_enabled);
-        views.extend(shadows.map(|(_, at, cascades)| View { sun: Some(sun(at, cascades)), ..view }));
+        views.extend(shadows.map(|(_, at, cascades)| Watch::new(&View { sun: Some(sun(at, cascades)), ..view })));
     }
     for mut forest in &mut forests {
         forest.bypass_change_detection().near.show_seen(*settings, views, |cell, shown| {

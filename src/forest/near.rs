@@ -7,7 +7,7 @@ use super::{
     components::{ForestCell, ForestSettings},
 };
 #[cfg(feature = "render")]
-use crate::cells::View;
+use crate::cells::Watch;
 use crate::{
     cells::{CellSet, CellStream, Orders, StreamSettings, Viewpoint},
     scatter::Planted,
@@ -21,6 +21,9 @@ use bevy::{
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
 };
 
+/// Side of a common cell, m.
+const COMMON_CELL_M: f32 = 64.0;
+
 /// The near cells of a forest.
 pub(super) struct NearTrees {
     #[cfg_attr(not(feature = "render"), expect(dead_code))]
@@ -33,7 +36,12 @@ pub(super) struct NearTrees {
     bare: Vec<IVec2>,
     /// By the number of the species.
     #[cfg(feature = "render")]
-    pub reaches: Vec<Reach>,
+    reaches: Vec<Reach>,
+    #[cfg(feature = "render")]
+    sights: Vec<Sight>,
+    /// Whether cells or reaches have changed since `sights` was made.
+    #[cfg(feature = "render")]
+    stale: bool,
 }
 
 /// The cells that are there.
@@ -50,9 +58,18 @@ struct NearCell {
     dressed: bool,
     #[cfg_attr(not(feature = "render"), expect(dead_code))]
     extent: Extent,
+}
+
+/// A cell with trees, as it is looked at.
+#[cfg(feature = "render")]
+struct Sight {
+    /// Of the box around its trees, m.
+    corners: [Vec3; 2],
+    entity: Entity,
     /// For so many frames nobody has seen it.
-    #[cfg_attr(not(feature = "render"), expect(dead_code))]
     unseen_frames: u8,
+    /// What was last told of it.
+    shown: Option<bool>,
 }
 
 /// How low, how high and how large the plants of a cell are.
@@ -108,11 +125,13 @@ impl CellSet for NearCells {
 impl NearTrees {
     pub fn new(settings: &ForestSettings, cell_m: f32, bounds: Option<[IVec2; 2]>) -> Result<Self, SettingError> {
         let at_once = settings.cells_at_once;
-        // To clear a cell takes as long as to raise one, and nobody waits for it: one a frame.
+        // To clear a cell takes as long as to raise one, and nobody waits for it: in a frame no more ground than a common
+        // cell's, which keeps up with any flight.
+        let drops_per_step = (COMMON_CELL_M / cell_m).powi(2).max(1.0) as u32;
         let stream = StreamSettings {
             plants_per_step: at_once,
             most_ordered: at_once,
-            drops_per_step: 1,
+            drops_per_step,
             ..reaching(settings.trees_to_m, cell_m)
         };
         Ok(Self {
@@ -124,6 +143,10 @@ impl NearTrees {
             bare: Vec::new(),
             #[cfg(feature = "render")]
             reaches: Vec::new(),
+            #[cfg(feature = "render")]
+            sights: Vec::new(),
+            #[cfg(feature = "render")]
+            stale: false,
         })
     }
 
@@ -149,40 +172,75 @@ impl NearTrees {
         self.cells.0.iter().filter(|(_, cell)| cell.dressed).map(|(cell, _)| *cell)
     }
 
-    /// Looks at every cell, and tells by its entity whether it is to be shown.
+    /// Notes how far the trees of each species reach.
     #[cfg(feature = "render")]
-    pub fn show_seen(&mut self, settings: ForestCulling, views: &[View], mut show: impl FnMut(Entity, bool)) {
-        let Self { cells, reaches, cell_m, .. } = self;
-        for (cell, there) in &mut cells.0 {
-            let [min, max] = there.extent.corners(cell.as_vec2() * *cell_m, *cell_m, reaches);
-            let is_near = |view: &View| view.eye_m.distance(view.eye_m.clamp(min, max)) <= settings.around_m;
-            let is_seen = |view: &View| is_near(view) || view.sees(min, max).is_some();
+    pub fn measure(&mut self, reaches: impl Iterator<Item = Reach>) {
+        self.reaches.clear();
+        self.reaches.extend(reaches);
+        self.stale = true;
+    }
+
+    /// Looks at every cell, and shows by its entity those that are seen; those that have not been for a while are hidden.
+    #[cfg(feature = "render")]
+    pub fn show_seen(&mut self, settings: ForestCulling, views: &[Watch], mut show: impl FnMut(Entity, bool)) {
+        self.renew_sights();
+        for sight in &mut self.sights {
+            let [min, max] = sight.corners;
+            let is_near = |view: &Watch| view.eye_m().distance(view.eye_m().clamp(min, max)) <= settings.around_m;
+            let is_seen = |view: &Watch| is_near(view) || view.sees(min, max).is_some();
             // Where nobody looks, what is there stays.
-            let seen = !settings.enabled || views.is_empty() || min.y > max.y || views.iter().any(is_seen);
-            there.unseen_frames = if seen { 0 } else { there.unseen_frames.saturating_add(1) };
-            show(there.entity, there.unseen_frames <= settings.lingering_frames);
+            let seen = !settings.enabled || views.is_empty() || views.iter().any(is_seen);
+            sight.unseen_frames = if seen { 0 } else { sight.unseen_frames.saturating_add(1) };
+            let shown = sight.unseen_frames <= settings.lingering_frames;
+            if sight.shown != Some(shown) {
+                sight.shown = Some(shown);
+                show(sight.entity, shown);
+            }
         }
+    }
+
+    /// The boxes of the cells lie side by side, for they are all looked at in every frame; they are put in order again when a
+    /// cell comes or goes.
+    #[cfg(feature = "render")]
+    fn renew_sights(&mut self) {
+        if !std::mem::take(&mut self.stale) {
+            return;
+        }
+        let Self { cells, reaches, cell_m, sights, .. } = self;
+        let before: HashMap<Entity, u8> = sights.iter().map(|sight| (sight.entity, sight.unseen_frames)).collect();
+        sights.clear();
+        let planted = cells.0.iter().filter(|(_, there)| !there.extent.largest.is_empty());
+        sights.extend(planted.map(|(cell, there)| Sight {
+            corners: there.extent.corners(cell.as_vec2() * *cell_m, *cell_m, reaches),
+            entity: there.entity,
+            unseen_frames: before.get(&there.entity).copied().unwrap_or(0),
+            shown: None,
+        }));
     }
 
     /// Cells that are there, and those that were seen in the last frame.
     #[cfg(feature = "render")]
     pub fn count(&self) -> (usize, usize) {
-        let seen = self.cells.0.values().filter(|cell| cell.unseen_frames == 0).count();
-        (self.cells.0.len(), seen)
+        (self.cells.0.len(), self.sights.iter().filter(|sight| sight.unseen_frames == 0).count())
     }
 
-    /// Every cell, the box around its trees, and whether it was seen in the last frame.
+    /// The box around the trees of each cell, and whether it was seen in the last frame.
     #[cfg(feature = "render")]
     pub fn boxes(&self) -> impl Iterator<Item = ([Vec3; 2], bool)> {
-        self.cells.0.iter().map(|(cell, there)| {
-            let corners = there.extent.corners(cell.as_vec2() * self.cell_m, self.cell_m, &self.reaches);
-            (corners, there.unseen_frames == 0)
-        })
+        self.sights.iter().map(|sight| (sight.corners, sight.unseen_frames == 0))
     }
 
     /// Takes over cells that have been planted.
     fn receive(&mut self, forest: Entity, commands: &mut Commands) {
-        let Self { planting, cells, bare, stream, .. } = self;
+        let Self {
+            planting,
+            cells,
+            bare,
+            stream,
+            #[cfg(feature = "render")]
+            stale,
+            ..
+        } = self;
         planting.retain_mut(|(cell, task)| {
             let Some(planted) = block_on(poll_once(task)) else { return true };
             if !stream.fulfil(*cell) {
@@ -199,9 +257,12 @@ impl NearTrees {
                 extent: Extent::of(&planted),
                 planted,
                 raised: 0,
-                unseen_frames: 0,
             };
             cells.0.insert(*cell, near);
+            #[cfg(feature = "render")]
+            {
+                *stale = true;
+            }
             false
         });
     }
@@ -211,6 +272,10 @@ impl NearTrees {
         for cell in &self.orders.drop {
             if let Some(there) = self.cells.0.remove(cell) {
                 commands.entity(there.entity).despawn();
+                #[cfg(feature = "render")]
+                {
+                    self.stale = true;
+                }
                 self.bare.retain(|bare| bare != cell);
             }
         }

@@ -5,6 +5,7 @@
 
 pub mod firs;
 pub mod plants;
+pub mod wood;
 
 use bevy::{
     log::LogPlugin,

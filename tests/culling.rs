@@ -1,0 +1,49 @@
+//! Hiding cells that nobody sees changes no picture. Needs a Vulkan driver; Mesa's software one will do.
+
+mod support;
+
+use bevy::{light::CascadeShadowConfigBuilder, prelude::*};
+use bevy_windwood::{
+    forest::{ForestCell, ForestCulling},
+    prelude::*,
+};
+use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
+use support::wood::Wood;
+
+fn hidden_cells(wood: &mut Wood) -> usize {
+    let world = wood.app.world_mut();
+    let mut cells = world.query_filtered::<&Visibility, With<ForestCell>>();
+    cells.iter(world).filter(|visibility| **visibility == Visibility::Hidden).count()
+}
+
+#[test]
+fn no_tree_and_no_shadow_in_view_is_missing() {
+    let settings = ForestSettings { trees_to_m: 300.0, far_to_m: 0.0, ..default() };
+    let mut wood = Wood::new(settings, None);
+    let world = wood.app.world_mut();
+    let ground = world.resource_mut::<Assets<Mesh>>().add(Plane3d::default().mesh().size(900.0, 900.0));
+    let white = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial::from(Color::WHITE));
+    world.spawn((Mesh3d(ground), MeshMaterial3d(white)));
+    let cascades = CascadeShadowConfigBuilder { num_cascades: 1, maximum_distance: 120.0, ..default() }.build();
+    let sun = DirectionalLight { illuminance: 8000.0, shadow_maps_enabled: true, ..default() };
+    // Low, so that shadows are long.
+    world.spawn((sun, cascades, Transform::default().looking_to(Vec3::new(0.3, -0.35, 0.9), Vec3::Y)));
+
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(4);
+    let mut hidden = 0;
+    for view in 0..5 {
+        let mut place = || random.random_range(-120.0..120.0_f32);
+        let eye = Vec3::new(place(), 8.0, place());
+        let towards = Vec3::new(place(), -12.0, place());
+        wood.look(eye, towards);
+        wood.app.world_mut().insert_resource(ForestCulling { enabled: true, around_m: 0.0, lingering_frames: 0 });
+        let culled = wood.picture();
+        hidden += hidden_cells(&mut wood);
+        wood.app.world_mut().insert_resource(ForestCulling { enabled: false, ..default() });
+        let all = wood.picture();
+        assert_eq!(hidden_cells(&mut wood), 0);
+        let differing = culled.pixels().zip(all.pixels()).filter(|(a, b)| a != b).count();
+        assert_eq!(differing, 0, "pixels of view {view}, from {eye} towards {towards}");
+    }
+    assert!(hidden > 200, "{hidden} cells were hidden");
+}

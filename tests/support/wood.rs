@@ -1,0 +1,80 @@
+//! A small forest of firs before a camera.
+
+#[path = "../../examples/support/capture.rs"]
+mod capture;
+
+use super::{headless_app, update_until};
+use bevy::{prelude::*, render::render_resource::WgpuLimits};
+use bevy_windwood::{
+    forest::{FarBlocks, ForestCells},
+    prelude::*,
+    scatter::{
+        ForestPlan,
+        plan::{Area, Shape, Stock},
+    },
+    sway::DrawPath,
+};
+use image::RgbaImage;
+use std::time::Duration;
+
+const SIZE: (u32, u32) = (320, 180);
+
+/// A forest, its camera, and what the camera draws on.
+pub struct Wood {
+    pub app: App,
+    pub camera: Entity,
+    canvas: Handle<Image>,
+}
+
+impl Wood {
+    /// Firs in a square of 400 m about the origin on level ground, in cells of 32 m, on a device that is held to `limits`;
+    /// all of them are drawn.
+    pub fn new(settings: ForestSettings, limits: Option<WgpuLimits>) -> Self {
+        let mut app = headless_app(Duration::ZERO, limits);
+        capture::begin(&mut app).expect("a graphics device");
+        let canvas = capture::canvas(&mut app, SIZE);
+        let area = Area {
+            shape: Shape::Rectangle { min_m: [-200.0; 2], max_m: [200.0; 2] },
+            density_per_ha: 25.0,
+            stock: vec![Stock { species: "fir".into(), age_years: 60.0, age_spread_years: 10.0, ..default() }],
+            ..default()
+        };
+        let plan = ForestPlan { seed: 3, cell_m: 32.0, areas: vec![area], ..default() };
+        let world = app.world_mut();
+        let plan = world.resource_mut::<Assets<ForestPlan>>().add(plan);
+        world.insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
+        world.insert_resource(GlobalAmbientLight { brightness: 900.0, ..default() });
+        let wants_far = settings.far_to_m > 0.0;
+        world.spawn((Forest::new(plan), ForestSettings { trees_per_frame: 10_000, cells_at_once: 64, ..settings }));
+        let eye = Transform::from_xyz(0.0, 12.0, 0.0).looking_to(Vec3::NEG_Z, Vec3::Y);
+        let camera = world.spawn((capture::camera(&canvas), eye)).id();
+        let ready = update_until(&mut app, |world| {
+            let wants_far = wants_far && world.resource::<DrawPath>().sways;
+            let cells = world.query::<&ForestCells>().iter(world).any(ForestCells::is_complete);
+            let far = !wants_far || world.query::<&FarBlocks>().iter(world).any(FarBlocks::is_complete);
+            let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
+            cells && far && bare == 0 && world.resource::<ActiveSway>().is_ready()
+        });
+        assert!(ready, "the forest did not come about");
+        Self { app, camera, canvas }
+    }
+
+    /// Moves the camera.
+    pub fn look(&mut self, from: Vec3, towards: Vec3) {
+        *self.app.world_mut().get_mut::<Transform>(self.camera).expect("a camera") =
+            Transform::from_translation(from).looking_to(towards, Vec3::Y);
+    }
+
+    /// What the camera sees, once nothing changes any more.
+    pub fn picture(&mut self) -> RgbaImage {
+        (0..6).for_each(|_| capture::step(&mut self.app));
+        capture::capture(&mut self.app, &self.canvas, SIZE).expect("a picture")
+    }
+
+    /// Share of the picture that is not background.
+    pub fn covered(&mut self) -> f32 {
+        let picture = self.picture();
+        let drawn = picture.pixels().filter(|pixel| !(pixel.0[0] > 200 && pixel.0[1] < 60 && pixel.0[2] > 200)).count();
+        drawn as f32 / (SIZE.0 * SIZE.1) as f32
+    }
+}
