@@ -7,7 +7,8 @@ use bevy_windwood::{
     forest::PlanCover,
     prelude::*,
     scatter::{
-        CountModel, ForestPlan, Planter,
+        ForestPlan, Planter,
+        counts::CountModel,
         plan::{Area, GroundLimits, KeepOut, Shape, Stock},
     },
     terrain::Cover,
@@ -120,7 +121,7 @@ pub fn spawn_hamlet(
     }
     let eye = camera_transform(ground).translation.xz();
     let blades = Tuft { blades: 10, longest_m: 0.42, narrowest_m: 0.006, widest_m: 0.014, ..default() };
-    for (column, row) in (-1..=1).flat_map(|column| (-2..=0).map(move |row| (column, row))) {
+    for (column, row) in (-1..=1_i32).flat_map(|column| (-2..=0_i32).map(move |row| (column, row))) {
         let middle = eye + PATCH_M * Vec2::new(column as f32, row as f32 - 0.3);
         let sward = Sward {
             width_m: PATCH_M,

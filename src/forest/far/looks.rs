@@ -7,7 +7,7 @@ use super::{
 use crate::{
     forest::cells::ForestCells,
     lod::{LevelSettings, Scene, ViewAtlas},
-    sway::StandTables,
+    sway::{DrawPath, StandTables},
     tree::{Species, TreeModel, growth::age::Age, painting::paint},
 };
 use bevy::{
@@ -64,10 +64,15 @@ pub(super) fn bake_far_looks(
     mut materials: ResMut<Assets<FarMaterial>>,
     mut events: MessageReader<AssetEvent<Species>>,
     tables: Res<StandTables>,
+    path: Res<DrawPath>,
     near: Res<NearCells>,
     species: Res<Assets<Species>>,
     forests: Query<&ForestCells>,
 ) {
+    if !path.sways {
+        // Without storage buffers not even the layout of their material can be made.
+        return;
+    }
     let changed = events.read().filter_map(|event| match event {
         AssetEvent::Modified { id } => Some(*id),
         _ => None,
