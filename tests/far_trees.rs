@@ -1,7 +1,5 @@
 //! Far trees cover as much of the picture as the trees that they stand for.
 
-#[path = "../examples/support/capture.rs"]
-mod capture;
 mod support;
 
 use bevy::prelude::*;
@@ -14,6 +12,7 @@ use bevy_windwood::{
     },
 };
 use std::time::Duration;
+use support::capture;
 
 const SIZE: (u32, u32) = (320, 200);
 

@@ -1,13 +1,12 @@
 //! Cameras and suns that come after the trees see them. Needs a Vulkan driver; Mesa's software one will do.
 
-#[path = "../examples/support/capture.rs"]
-mod capture;
 mod support;
 
 use bevy::prelude::*;
 use bevy_windwood::prelude::*;
 use image::RgbaImage;
 use std::time::Duration;
+use support::capture;
 
 const SIZE: (u32, u32) = (160, 80);
 

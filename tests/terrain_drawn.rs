@@ -1,7 +1,5 @@
 //! The drawn ground has no holes and no cracks: nothing shines through it from any place.
 
-#[path = "../examples/support/capture.rs"]
-mod capture;
 mod support;
 
 use bevy::{math::DVec2, prelude::*};
@@ -11,6 +9,7 @@ use bevy_windwood::{
 };
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::time::Duration;
+use support::capture;
 
 const SIZE: (u32, u32) = (240, 160);
 

@@ -5,8 +5,6 @@
 
 mod basis;
 mod beams;
-#[path = "../support/capture.rs"]
-mod capture;
 mod figure9;
 mod figure9_chart;
 mod levels;
@@ -17,6 +15,8 @@ mod scale;
 #[path = "../support/sheet.rs"]
 mod sheet;
 mod spectrum;
+#[path = "../../tests/support/mod.rs"]
+mod support;
 mod terrain;
 mod trees;
 #[path = "../support/walk.rs"]
@@ -24,6 +24,7 @@ mod walk;
 
 use clap::{Parser, ValueEnum};
 use std::{path::PathBuf, process::ExitCode};
+use support::capture;
 
 /// A claim that can be checked.
 #[derive(Clone, Copy, ValueEnum)]

@@ -4,10 +4,7 @@
 //! processor; a compute shader then carries every vertex with the same shader module that draws it, and the positions are
 //! read back. The processor poses the same tree with `TreePoser` from the same tables.
 
-#[path = "../../tests/support/mod.rs"]
-mod support;
-
-use crate::report::Report;
+use crate::{report::Report, support};
 use bevy::{
     core_pipeline::schedule::camera_driver,
     prelude::*,

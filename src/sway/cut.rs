@@ -11,6 +11,7 @@ use crate::{
     texture::TextureData,
     tree::{
         Species, TreeModel,
+        growth::Growth,
         leaf_mesh::LeafVertices,
         mesh::WoodVertices,
         painting::{SpeciesTextures, paint},
@@ -75,9 +76,14 @@ pub(super) struct EnvelopeCloth {
 pub(super) fn cut(species: &Species, painting: bool, models: Vec<TreeModel>, style: LevelStyle) -> Cut {
     let textures = (painting || style == LevelStyle::Paper).then(|| paint(species));
     let settings = LevelSettings::default();
+    // A painter's crown has few parts, each of which is seen: none of them may go.
+    let painted = matches!(species.growth, Growth::Gardner(_) | Growth::Impressionist(_));
+    let leaf_share = |share| if painted { 1.0 } else { share };
+    let thinned = |part: &Reduction| Reduction { leaf_share: leaf_share(part.leaf_share), ..*part };
+    let reductions: Vec<Reduction> = settings.reductions.iter().map(thinned).collect();
     let levels = |model: TreeModel| match (style, &textures) {
         (LevelStyle::Paper, Some(textures)) => paper_levels(species, model, textures, &settings),
-        (LevelStyle::Thinned, _) => thinned_levels(model, &settings.reductions),
+        (LevelStyle::Thinned, _) => thinned_levels(model, &reductions),
         (LevelStyle::Full | LevelStyle::Paper, _) => vec![full_level(model, Cloth::Bark)],
     };
     let variant = |model: TreeModel| VariantCut { height_m: model.height_m(), levels: levels(model) };

@@ -3,6 +3,8 @@
 // Each of the programs that take this in uses a part of it.
 #![allow(dead_code)]
 
+#[path = "../../examples/support/capture.rs"]
+pub mod capture;
 pub mod firs;
 pub mod plants;
 pub mod wood;

@@ -1,9 +1,6 @@
 //! A small forest of firs before a camera.
 
-#[path = "../../examples/support/capture.rs"]
-mod capture;
-
-use super::{headless_app, update_until};
+use super::{capture, headless_app, update_until};
 use bevy::{prelude::*, render::render_resource::WgpuLimits};
 use bevy_windwood::{
     forest::{FarBlocks, ForestCells},
