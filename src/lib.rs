@@ -27,14 +27,14 @@
 //! | [`dynamics`] | cantilevers, oscillators, load bases, response tables, poses; no ECS | nobody |
 //! | [`texture`] | the canvas with its mips, Fourier textures | nobody |
 //! | [`tree`] | species, growth, meshes, [`Tree`](tree::Tree), [`Season`](tree::Season) | dynamics, texture |
-//! | [`sway`] | trees in the wind, on the processor and in shaders | tree, wind, dynamics, texture |
+//! | [`sway`] | trees in the wind, at all levels of detail, on the processor and in shaders | tree, wind, dynamics, texture, lod |
 //! | [`lod`] | lower levels of detail of a baked tree: reduced meshes, envelopes, views | tree, texture, dynamics |
 //! | [`grass`] | meadows that bend in the wind, [`GrassPatch`](grass::GrassPatch) | sway |
 //! | [`fire`] | fires that lean with it and give light, [`Fire`](fire::Fire) | sway, wind |
 //! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Terrain`](terrain::Terrain) | texture |
 //! | [`scatter`] | point patterns and forest plans: where plants stand | nobody |
-//! | [`forest`] | forests that grow from plans about the viewers, [`Forest`](forest::Forest) | scatter, terrain, tree, lod, sway |
-//! | [`cells`] | the forest's voxel grid: what is seen, at which level, what to plant, who stands where; no ECS | scatter |
+//! | [`forest`] | forests that grow from plans about the viewers, [`Forest`](forest::Forest) | scatter, cells, terrain, tree, lod, sway, wind |
+//! | [`cells`] | the forest's voxel grid: what is seen, at which level, what to plant, who stands where; no ECS | scatter, lod |
 
 mod schedule;
 mod setting;

@@ -18,12 +18,12 @@ const MAY_KNOW: [(&str, &[&str]); 12] = [
     ("sway", &["tree", "wind", "dynamics", "texture", "lod"]),
     ("grass", &["sway"]),
     ("fire", &["sway", "wind"]),
-    ("forest", &["scatter", "cells", "terrain", "tree", "lod", "sway"]),
+    ("forest", &["scatter", "cells", "terrain", "tree", "lod", "sway", "wind"]),
 ];
 
 /// Files that glue a room to the engine. All others but those of `sway` are pure: they can be read beside the
 /// paper, and know no entities, systems or apps.
-const GLUE: [&str; 38] = [
+const GLUE: [&str; 39] = [
     "wind/cells.rs",
     "wind/clock.rs",
     "wind/current.rs",
@@ -53,6 +53,7 @@ const GLUE: [&str; 38] = [
     "forest/far/plugin.rs",
     "forest/loader.rs",
     "forest/plugin.rs",
+    "forest/serve.rs",
     "forest/cells.rs",
     "forest/cull.rs",
     "forest/diagnose.rs",

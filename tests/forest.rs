@@ -191,3 +191,58 @@ fn a_viewer_who_is_nowhere_is_no_viewer() {
     (0..10).for_each(|_| app.update());
     assert_eq!(trees(&mut app), good);
 }
+
+#[test]
+fn near_cells_feel_the_wind_and_the_nearest_trees_are_articulated() {
+    let (mut app, viewer) = forest_app();
+    let world = app.world_mut();
+    world.query::<&mut ForestSettings>().iter_mut(world).for_each(|mut settings| {
+        (settings.wind_cells, settings.articulated_to_m) = (true, 30.0);
+    });
+    look_from(&mut app, viewer, Vec2::ZERO);
+    let world = app.world_mut();
+    let cells = world.query::<&ForestCell>().iter(world).count();
+    let winds: Vec<Vec3> =
+        world.query_filtered::<&Transform, With<WindCell>>().iter(world).map(|at| at.translation).collect();
+    assert!(winds.len() > 20 && winds.len() <= cells, "{} of {cells}", winds.len());
+    assert!(winds.iter().all(|at| (at.y - 10.0).abs() <= 12.0));
+    let articulated = |app: &mut App| -> Vec<Vec2> {
+        let world = app.world_mut();
+        let mut trees = world.query_filtered::<&Transform, (With<Tree>, With<Articulated>)>();
+        trees.iter(world).map(|at| at.translation.xz()).collect()
+    };
+    let near = articulated(&mut app);
+    // Cell by cell: whoever is within the distance, and nobody beyond it by more than a cell's diagonal.
+    let all = places(&mut app);
+    let within = all.iter().filter(|at| at.xz().length() < 30.0).count();
+    assert!(within > 20 && near.iter().filter(|at| at.length() < 30.0).count() == within);
+    assert!(near.iter().all(|at| at.length() < 30.0 + 32.0 * 1.5) && near.len() < all.len());
+    look_from(&mut app, viewer, Vec2::new(60.0, 0.0));
+    assert!(articulated(&mut app).iter().all(|at| at.distance(Vec2::new(60.0, 0.0)) < 34.5 + 32.0 * 1.5));
+}
+
+#[test]
+fn the_forest_tells_who_stands_where() {
+    let (mut app, viewer) = forest_app();
+    look_from(&mut app, viewer, Vec2::new(13.0, -40.0));
+    for _ in 0..2000 {
+        app.update();
+        let world = app.world_mut();
+        if world.query::<&ForestCells>().iter(world).all(ForestCells::is_planted) {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    let trees = places(&mut app);
+    let world = app.world_mut();
+    let mut forests = world.query::<&ForestCells>();
+    let store = forests.single(world).unwrap().store();
+    let at = Vec2::new(20.0, -30.0);
+    let nearest = trees.iter().map(|tree| tree.xz().distance(at)).fold(f32::INFINITY, f32::min);
+    let found = store.nearest(at, 100.0).unwrap();
+    // Stems are packed to half a millimetre.
+    assert!((found.distance_m - nearest).abs() < 2e-3, "{} and {nearest}", found.distance_m);
+    let mut count = 0_usize;
+    store.within(at, 40.0, |_| count += 1);
+    assert!(count.abs_diff(trees.iter().filter(|tree| tree.xz().distance(at) <= 40.0).count()) <= 1);
+}

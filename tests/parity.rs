@@ -3,7 +3,9 @@
 #[path = "../examples/validate/parity.rs"]
 mod parity;
 #[path = "../examples/validate/report.rs"]
+#[allow(dead_code, reason = "this topic uses a part of it")]
 mod report;
+mod support;
 
 #[test]
 fn posed_vertices_agree_on_both_processors() {

@@ -39,6 +39,11 @@ pub struct ForestSettings {
     pub cells_at_once: u32,
     /// Trees that come in a frame, at most. domain: \[1, 100000\].
     pub trees_per_frame: u32,
+    /// Trees of cells nearer than this to a viewpoint are [`Articulated`](crate::tree::Articulated); 0 for none. It costs work
+    /// every frame for each of them. units: m, domain: \[0, 1000\].
+    pub articulated_to_m: f32,
+    /// Whether near cells feel the wind: each has a [`WindCell`](crate::wind::WindCell) in its middle, 10 m over the ground.
+    pub wind_cells: bool,
 }
 
 impl Default for ForestSettings {
@@ -49,6 +54,8 @@ impl Default for ForestSettings {
             far_to_m: 2500.0,
             cells_at_once: 4,
             trees_per_frame: 64,
+            articulated_to_m: 0.0,
+            wind_cells: false,
         }
     }
 }
@@ -65,7 +72,8 @@ impl ForestSettings {
         require("trees_to_m", self.trees_to_m, 0.0..=2e4)?;
         require("far_to_m", self.far_to_m, 0.0..=5e4)?;
         require("cells_at_once", self.cells_at_once as f32, 1.0..=64.0)?;
-        require("trees_per_frame", self.trees_per_frame as f32, 1.0..=1e5)
+        require("trees_per_frame", self.trees_per_frame as f32, 1.0..=1e5)?;
+        require("articulated_to_m", self.articulated_to_m, 0.0..=1e3)
     }
 }
 

@@ -3,7 +3,7 @@
 //! A hidden cell's trees are neither culled one by one nor drawn into shadow maps. A cell that is seen no more stays for a
 //! second, so that looking about moves nothing to and fro; one that comes into view is there in the same frame.
 
-use super::{cells::ForestCells, components::ForestCell};
+use super::{cells::ForestCells, components::ForestCell, extent::Reach};
 use crate::{
     cells::{Sun, View, Watch},
     tree::{Grove, TreeModel},
@@ -11,6 +11,7 @@ use crate::{
 use bevy::{
     camera::primitives::Frustum,
     light::{CascadeShadowConfig, DirectionalLight},
+    platform::collections::HashMap,
     prelude::*,
 };
 
@@ -35,40 +36,97 @@ impl Default for ForestCulling {
 /// The shadows of a camera end at a depth, which in the corners of a wide picture lies farther away by up to this factor.
 const CORNERS: f32 = 1.6;
 
+/// The near cells of a forest as they are looked at.
+#[derive(Component, Default)]
+pub(super) struct Sights {
+    /// By the number of the species.
+    reaches: Vec<Reach>,
+    /// Side by side, for all of them are looked at in every frame.
+    sights: Vec<Sight>,
+    /// The forest's generation and changes that `sights` was made for.
+    made_for: Option<(u64, u64)>,
+}
+
+/// A near cell with trees.
+struct Sight {
+    /// Of the box around its trees, m.
+    corners: [Vec3; 2],
+    entity: Entity,
+    /// For so many frames nobody has seen it.
+    unseen_frames: u8,
+    /// What was last told of it.
+    shown: Option<bool>,
+}
+
+impl Sights {
+    /// Cells with trees that were seen in the last frame.
+    pub fn seen(&self) -> usize {
+        self.sights.iter().filter(|sight| sight.unseen_frames == 0).count()
+    }
+
+    /// The box around the trees of each cell, and whether it was seen in the last frame.
+    pub fn boxes(&self) -> impl Iterator<Item = ([Vec3; 2], bool)> {
+        self.sights.iter().map(|sight| (sight.corners, sight.unseen_frames == 0))
+    }
+
+    /// Puts the cells in order again when one has come or gone.
+    fn renew(&mut self, forest: &ForestCells) {
+        let wanted = Some((forest.generation(), forest.near.changes()));
+        if self.made_for == wanted {
+            return;
+        }
+        self.made_for = wanted;
+        let before: HashMap<Entity, u8> =
+            self.sights.drain(..).map(|sight| (sight.entity, sight.unseen_frames)).collect();
+        let cell_m = forest.planter().cell_m();
+        self.sights.extend(forest.near.planted().map(|(cell, entity, extent)| Sight {
+            corners: extent.corners(cell.as_vec2() * cell_m, cell_m, &self.reaches),
+            entity,
+            unseen_frames: before.get(&entity).copied().unwrap_or(0),
+            shown: None,
+        }));
+    }
+
+    /// Looks at every cell, and shows by its entity those that are seen; those that have not been for a while are hidden.
+    fn look(&mut self, settings: ForestCulling, views: &[Watch], mut show: impl FnMut(Entity, bool)) {
+        for sight in &mut self.sights {
+            let [min, max] = sight.corners;
+            let is_near = |view: &Watch| view.eye_m().distance(view.eye_m().clamp(min, max)) <= settings.around_m;
+            let is_seen = |view: &Watch| is_near(view) || view.sees(min, max).is_some();
+            // Where nobody looks, what is there stays.
+            let seen = !settings.enabled || views.is_empty() || views.iter().any(is_seen);
+            sight.unseen_frames = if seen { 0 } else { sight.unseen_frames.saturating_add(1) };
+            let shown = sight.unseen_frames <= settings.lingering_frames;
+            if sight.shown != Some(shown) {
+                sight.shown = Some(shown);
+                show(sight.entity, shown);
+            }
+        }
+    }
+}
+
 /// Notes how far the trees of a species may reach, when more of them have been baked.
-pub(super) fn measure_species(grove: Res<Grove>, models: Res<Assets<TreeModel>>, mut forests: Query<&mut ForestCells>) {
-    let baked = grove.is_changed();
-    for mut forest in &mut forests {
-        if !baked && !forest.is_added() {
+pub(super) fn measure_species(
+    mut commands: Commands,
+    grove: Res<Grove>,
+    models: Res<Assets<TreeModel>>,
+    mut forests: Query<(Entity, Ref<ForestCells>, Option<&mut Sights>)>,
+) {
+    for (entity, forest, sights) in &mut forests {
+        let Some(mut sights) = sights else {
+            commands.entity(entity).insert(Sights::default());
+            continue;
+        };
+        if !grove.is_changed() && !sights.is_added() && !forest.is_added() {
             continue;
         }
-        let (near, species, _) = forest.bypass_change_detection().parts();
-        near.measure(species.iter().map(|species| {
+        sights.made_for = None;
+        sights.reaches.clear();
+        sights.reaches.extend(forest.species().iter().map(|species| {
             let stages = grove.get(species.id()).into_iter().flat_map(|entry| entry.stages.values());
             let models = stages.flat_map(|stage| &stage.models).filter_map(|model| models.get(model));
             models.fold(Reach::default(), |reach, model| reach.with(model.bounds.min, model.bounds.max))
         }));
-    }
-}
-
-/// How far trees of a species reach while their scale is 1, swaying.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Reach {
-    /// Above and below their foot, m.
-    pub up_m: f32,
-    pub down_m: f32,
-    /// Sideways, m.
-    pub aside_m: f32,
-}
-
-impl Reach {
-    fn with(self, min: Vec3, max: Vec3) -> Self {
-        let aside = min.abs().max(max.abs());
-        Self {
-            up_m: self.up_m.max(max.y),
-            down_m: self.down_m.max(-min.y),
-            aside_m: self.aside_m.max(aside.x.hypot(aside.z)),
-        }
     }
 }
 
@@ -82,7 +140,7 @@ pub(super) fn cull_cells(
     cameras: Query<(&Camera, &Frustum, &GlobalTransform), With<Camera3d>>,
     suns: Query<(&DirectionalLight, &GlobalTransform, &CascadeShadowConfig)>,
     mut views: Local<Views>,
-    mut forests: Query<&mut ForestCells>,
+    mut forests: Query<(&ForestCells, &mut Sights)>,
     mut cells: Query<&mut Visibility, With<ForestCell>>,
 ) {
     let views = &mut views.0;
@@ -98,11 +156,12 @@ pub(super) fn cull_cells(
         let shadows = suns.iter().filter(|(light, ..)| light.shadow_maps_enabled);
         views.extend(shadows.map(|(_, at, cascades)| Watch::new(&View { sun: Some(sun(at, cascades)), ..view })));
     }
-    for mut forest in &mut forests {
-        forest.bypass_change_detection().near.show_seen(*settings, views, |cell, shown| {
+    for (forest, mut sights) in &mut forests {
+        let sights = sights.bypass_change_detection();
+        sights.renew(forest);
+        sights.look(*settings, views, |cell, shown| {
             if let Ok(mut visibility) = cells.get_mut(cell) {
-                let wanted = if shown { Visibility::Inherited } else { Visibility::Hidden };
-                visibility.set_if_neq(wanted);
+                *visibility = if shown { Visibility::Inherited } else { Visibility::Hidden };
             }
         });
     }

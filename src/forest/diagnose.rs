@@ -1,6 +1,6 @@
 //! How the forest does: counts and times among Bevy's diagnostics, and its cells as boxes.
 
-use super::{cells::ForestCells, far::FarBlocks};
+use super::{cells::ForestCells, cull::Sights, far::FarBlocks};
 use crate::{sway::TreesByLevel, timing::SystemTimes};
 use bevy::{
     diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic},
@@ -45,17 +45,21 @@ impl Plugin for ForestDiagnosticsPlugin {
     }
 }
 
-fn count_forest(forests: Query<(&ForestCells, Option<&FarBlocks>)>, trees: TreesByLevel, mut diagnostics: Diagnostics) {
+fn count_forest(
+    forests: Query<(&ForestCells, Option<&FarBlocks>, Option<&Sights>)>,
+    trees: TreesByLevel,
+    mut diagnostics: Diagnostics,
+) {
     let mut add = |path: &DiagnosticPath, value: usize| diagnostics.add_measurement(path, || value as f64);
-    let sum = |of: fn(&ForestCells) -> usize| forests.iter().map(|(forest, _)| of(forest)).sum();
+    let sum = |of: fn(&ForestCells) -> usize| forests.iter().map(|(forest, ..)| of(forest)).sum();
     add(&CELLS_PLANTED, sum(|forest| forest.store().len()));
     add(&STEMS, sum(|forest| forest.store().plants()));
-    add(&CELLS_NEAR, sum(|forest| forest.near.count().0));
-    add(&CELLS_SEEN, sum(|forest| forest.near.count().1));
+    add(&CELLS_NEAR, sum(|forest| forest.near.entities().count()));
+    add(&CELLS_SEEN, forests.iter().filter_map(|(.., sights)| sights).map(Sights::seen).sum());
     let (levels, fading) = trees.count();
     TREES.iter().zip(levels).for_each(|(path, count)| add(path, count));
     add(&TREES_FADING, fading);
-    let blocks = || forests.iter().filter_map(|(_, blocks)| blocks);
+    let blocks = || forests.iter().filter_map(|(_, blocks, _)| blocks);
     add(&CARDS, blocks().map(FarBlocks::trees).sum());
     add(&GPU_BYTES, trees.table_bytes() + blocks().map(FarBlocks::bytes).sum::<usize>());
 }
@@ -124,10 +128,8 @@ impl Plugin for ForestGizmoPlugin {
     }
 }
 
-fn draw_cells(settings: Res<ForestGizmos>, forests: Query<&ForestCells>, trees: TreesByLevel, mut gizmos: Gizmos) {
-    for ([min, max], seen) in
-        forests.iter().flat_map(|forest| forest.near.boxes()).filter(|([min, max], _)| min.y < max.y)
-    {
+fn draw_cells(settings: Res<ForestGizmos>, forests: Query<&Sights>, trees: TreesByLevel, mut gizmos: Gizmos) {
+    for ([min, max], seen) in forests.iter().flat_map(Sights::boxes) {
         let colour = if seen { settings.seen } else { settings.unseen };
         gizmos.cube(Transform::from_translation(0.5 * (min + max)).with_scale(max - min), colour);
     }

@@ -5,6 +5,7 @@
 //!   drawn at all; what nobody is near to goes again. Ask [`ForestCells::store`] who stands where.
 //! - `near` turns the plants of near cells into [`Tree`](crate::tree::Tree)s, a few a frame. What stands where follows from
 //!   the plan alone, in whatever order cells come.
+//! - `serve` gives cells a wind of their own and the nearest trees beams and leaves as entities, where that is asked for.
 //! - With the feature `render`, `far` draws the trees beyond as cards, a block of cells at a time.
 //! - With it, too, `cull` hides near cells out of view, and `diagnose` tells how the forest does.
 //! - [`PlanCover`] tells the ground where the woods are, so that they are seen beyond the last tree.
@@ -16,11 +17,13 @@ mod cover;
 mod cull;
 #[cfg(feature = "render")]
 mod diagnose;
+mod extent;
 #[cfg(feature = "render")]
 mod far;
 mod loader;
 mod near;
 mod plugin;
+mod serve;
 
 pub use cells::ForestCells;
 pub use components::{Forest, ForestCell, ForestGround, ForestSettings};

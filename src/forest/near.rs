@@ -1,13 +1,10 @@
 //! Trees near the viewers: cells whose plants are entities.
 
-#[cfg(feature = "render")]
-use super::cull::{ForestCulling, Reach};
 use super::{
     cells::{ForestCells, reaching},
     components::{ForestCell, ForestSettings},
+    extent::Extent,
 };
-#[cfg(feature = "render")]
-use crate::cells::Watch;
 use crate::{
     cells::{CellSet, CellStream, Orders, StreamSettings, Viewpoint},
     scatter::Planted,
@@ -26,7 +23,6 @@ const COMMON_CELL_M: f32 = 64.0;
 
 /// The near cells of a forest.
 pub(super) struct NearTrees {
-    #[cfg_attr(not(feature = "render"), expect(dead_code))]
     cell_m: f32,
     stream: CellStream,
     orders: Orders,
@@ -34,14 +30,7 @@ pub(super) struct NearTrees {
     cells: NearCells,
     /// Cells whose trees are still to come, the first first.
     bare: Vec<IVec2>,
-    /// By the number of the species.
-    #[cfg(feature = "render")]
-    reaches: Vec<Reach>,
-    #[cfg(feature = "render")]
-    sights: Vec<Sight>,
-    /// Whether cells or reaches have changed since `sights` was made.
-    #[cfg(feature = "render")]
-    stale: bool,
+    changes: u64,
 }
 
 /// The cells that are there.
@@ -56,60 +45,8 @@ struct NearCell {
     /// Whether all of them are drawn.
     #[cfg_attr(not(feature = "render"), expect(dead_code))]
     dressed: bool,
-    #[cfg_attr(not(feature = "render"), expect(dead_code))]
     extent: Extent,
-}
-
-/// A cell with trees, as it is looked at.
-#[cfg(feature = "render")]
-struct Sight {
-    /// Of the box around its trees, m.
-    corners: [Vec3; 2],
-    entity: Entity,
-    /// For so many frames nobody has seen it.
-    unseen_frames: u8,
-    /// What was last told of it.
-    shown: Option<bool>,
-}
-
-/// How low, how high and how large the plants of a cell are.
-#[cfg_attr(not(feature = "render"), expect(dead_code))]
-struct Extent {
-    lowest_m: f32,
-    highest_m: f32,
-    /// Number of a species, and the greatest scale of its plants.
-    largest: Box<[(u8, f32)]>,
-}
-
-impl Extent {
-    fn of(planted: &[Planted]) -> Self {
-        let mut largest: Vec<(u8, f32)> = Vec::new();
-        for plant in planted {
-            match largest.iter_mut().find(|(species, _)| *species == plant.species) {
-                Some((_, scale)) => *scale = scale.max(plant.vigour),
-                None => largest.push((plant.species, plant.vigour)),
-            }
-        }
-        let heights_m = || planted.iter().map(|plant| plant.position.y);
-        Self {
-            lowest_m: heights_m().fold(f32::INFINITY, f32::min),
-            highest_m: heights_m().fold(f32::NEG_INFINITY, f32::max),
-            largest: largest.into(),
-        }
-    }
-
-    /// The corners of the box around the cell's trees, swaying.
-    #[cfg(feature = "render")]
-    fn corners(&self, corner: Vec2, cell_m: f32, reaches: &[Reach]) -> [Vec3; 2] {
-        let [mut up_m, mut down_m, mut aside_m] = [0.0_f32; 3];
-        for (species, scale) in &self.largest {
-            let reach = reaches.get(usize::from(*species)).copied().unwrap_or_default();
-            (up_m, down_m) = (up_m.max(scale * reach.up_m), down_m.max(scale * reach.down_m));
-            aside_m = aside_m.max(scale * reach.aside_m);
-        }
-        let (min, max) = (corner - aside_m, corner + cell_m + aside_m);
-        [Vec3::new(min.x, self.lowest_m - down_m, min.y), Vec3::new(max.x, self.highest_m + up_m, max.y)]
-    }
+    articulated: bool,
 }
 
 impl CellSet for NearCells {
@@ -141,12 +78,7 @@ impl NearTrees {
             planting: Vec::new(),
             cells: NearCells::default(),
             bare: Vec::new(),
-            #[cfg(feature = "render")]
-            reaches: Vec::new(),
-            #[cfg(feature = "render")]
-            sights: Vec::new(),
-            #[cfg(feature = "render")]
-            stale: false,
+            changes: 0,
         })
     }
 
@@ -172,75 +104,44 @@ impl NearTrees {
         self.cells.0.iter().filter(|(_, cell)| cell.dressed).map(|(cell, _)| *cell)
     }
 
-    /// Notes how far the trees of each species reach.
+    /// Grows whenever a cell comes or goes.
     #[cfg(feature = "render")]
-    pub fn measure(&mut self, reaches: impl Iterator<Item = Reach>) {
-        self.reaches.clear();
-        self.reaches.extend(reaches);
-        self.stale = true;
+    pub fn changes(&self) -> u64 {
+        self.changes
     }
 
-    /// Looks at every cell, and shows by its entity those that are seen; those that have not been for a while are hidden.
+    /// Every cell in which something stands: its place, its entity and its extent.
     #[cfg(feature = "render")]
-    pub fn show_seen(&mut self, settings: ForestCulling, views: &[Watch], mut show: impl FnMut(Entity, bool)) {
-        self.renew_sights();
-        for sight in &mut self.sights {
-            let [min, max] = sight.corners;
-            let is_near = |view: &Watch| view.eye_m().distance(view.eye_m().clamp(min, max)) <= settings.around_m;
-            let is_seen = |view: &Watch| is_near(view) || view.sees(min, max).is_some();
-            // Where nobody looks, what is there stays.
-            let seen = !settings.enabled || views.is_empty() || views.iter().any(is_seen);
-            sight.unseen_frames = if seen { 0 } else { sight.unseen_frames.saturating_add(1) };
-            let shown = sight.unseen_frames <= settings.lingering_frames;
-            if sight.shown != Some(shown) {
-                sight.shown = Some(shown);
-                show(sight.entity, shown);
+    pub fn planted(&self) -> impl Iterator<Item = (IVec2, Entity, &Extent)> {
+        let cells = self.cells.0.iter().map(|(cell, there)| (*cell, there.entity, &there.extent));
+        cells.filter(|(.., extent)| !extent.is_empty())
+    }
+
+    /// Mean height of the ground where a cell's trees stand, m; none where nothing grows.
+    pub fn ground_m(&self, cell: IVec2) -> Option<f32> {
+        let extent = &self.cells.0.get(&cell)?.extent;
+        (!extent.is_empty()).then(|| extent.mean_m())
+    }
+
+    /// Tells of each cell whose trees are to be articulated, or no longer: from nearer than the first distance, m, up to the
+    /// second.
+    pub fn articulate(&mut self, eyes: &[Vec2], [from_m, to_m]: [f32; 2], mut tell: impl FnMut(Entity, bool)) {
+        let Self { cells, cell_m, .. } = self;
+        for (cell, there) in cells.0.iter_mut().filter(|(_, there)| there.planted.is_empty()) {
+            let corner = cell.as_vec2() * *cell_m;
+            let to_eye = |eye: &Vec2| eye.clamp(corner, corner + *cell_m).distance(*eye);
+            let distance_m = eyes.iter().map(to_eye).fold(f32::INFINITY, f32::min);
+            let wanted = distance_m < if there.articulated { to_m } else { from_m };
+            if wanted != there.articulated {
+                there.articulated = wanted;
+                tell(there.entity, wanted);
             }
         }
     }
 
-    /// The boxes of the cells lie side by side, for they are all looked at in every frame; they are put in order again when a
-    /// cell comes or goes.
-    #[cfg(feature = "render")]
-    fn renew_sights(&mut self) {
-        if !std::mem::take(&mut self.stale) {
-            return;
-        }
-        let Self { cells, reaches, cell_m, sights, .. } = self;
-        let before: HashMap<Entity, u8> = sights.iter().map(|sight| (sight.entity, sight.unseen_frames)).collect();
-        sights.clear();
-        let planted = cells.0.iter().filter(|(_, there)| !there.extent.largest.is_empty());
-        sights.extend(planted.map(|(cell, there)| Sight {
-            corners: there.extent.corners(cell.as_vec2() * *cell_m, *cell_m, reaches),
-            entity: there.entity,
-            unseen_frames: before.get(&there.entity).copied().unwrap_or(0),
-            shown: None,
-        }));
-    }
-
-    /// Cells that are there, and those that were seen in the last frame.
-    #[cfg(feature = "render")]
-    pub fn count(&self) -> (usize, usize) {
-        (self.cells.0.len(), self.sights.iter().filter(|sight| sight.unseen_frames == 0).count())
-    }
-
-    /// The box around the trees of each cell, and whether it was seen in the last frame.
-    #[cfg(feature = "render")]
-    pub fn boxes(&self) -> impl Iterator<Item = ([Vec3; 2], bool)> {
-        self.sights.iter().map(|sight| (sight.corners, sight.unseen_frames == 0))
-    }
-
     /// Takes over cells that have been planted.
     fn receive(&mut self, forest: Entity, commands: &mut Commands) {
-        let Self {
-            planting,
-            cells,
-            bare,
-            stream,
-            #[cfg(feature = "render")]
-            stale,
-            ..
-        } = self;
+        let Self { planting, cells, bare, stream, changes, .. } = self;
         planting.retain_mut(|(cell, task)| {
             let Some(planted) = block_on(poll_once(task)) else { return true };
             if !stream.fulfil(*cell) {
@@ -257,12 +158,10 @@ impl NearTrees {
                 extent: Extent::of(&planted),
                 planted,
                 raised: 0,
+                articulated: false,
             };
             cells.0.insert(*cell, near);
-            #[cfg(feature = "render")]
-            {
-                *stale = true;
-            }
+            *changes += 1;
             false
         });
     }
@@ -272,10 +171,7 @@ impl NearTrees {
         for cell in &self.orders.drop {
             if let Some(there) = self.cells.0.remove(cell) {
                 commands.entity(there.entity).despawn();
-                #[cfg(feature = "render")]
-                {
-                    self.stale = true;
-                }
+                self.changes += 1;
                 self.bare.retain(|bare| bare != cell);
             }
         }

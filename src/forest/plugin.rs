@@ -5,6 +5,7 @@ use super::{
     components::{Forest, ForestSettings},
     loader::ForestLoader,
     near::raise_trees,
+    serve::{articulate_near, give_winds},
 };
 use crate::{
     scatter::ForestPlan, schedule::WindwoodSystems, timing::timed, tree::TreePlugin, viewpoint::give_cameras_viewpoints,
@@ -27,6 +28,8 @@ impl Plugin for ForestPlugin {
             timed(app, "begin_forests", begin_forests),
             timed(app, "plant_cells", plant_cells),
             timed(app, "raise_trees", raise_trees),
+            timed(app, "give_winds", give_winds),
+            timed(app, "articulate_near", articulate_near),
         );
         app.add_systems(Update, stream.chain().before(WindwoodSystems::Grow));
     }

@@ -1,7 +1,7 @@
 //! Which cells' trees stand near, as the shader reads it: a square of bits about the viewer.
 
 use super::blocks::FarBlocks;
-use crate::{forest::cells::ForestCells, sway::CardRange, viewpoint::Viewpoints};
+use crate::{forest::cells::ForestCells, sway::CardRange, tree::Tree, viewpoint::Viewpoints};
 use bevy::{asset::RenderAssetUsages, prelude::*, render::storage::ShaderBuffer};
 
 /// Cells along a side of the square: at 64 m a cell, a kilometre to each side.
@@ -59,7 +59,7 @@ pub(super) fn tell_near_cells(
     mut cards: ResMut<CardRange>,
     mut forests: Query<(&mut ForestCells, Option<&FarBlocks>)>,
     children: Query<&Children>,
-    dressed: Query<(), With<Mesh3d>>,
+    bare: Query<(), (With<Tree>, Without<Mesh3d>)>,
 ) {
     let Some((mut forest, blocks)) = forests.iter_mut().next() else { return };
     // Trees do not go before there is something to stand for them.
@@ -70,8 +70,7 @@ pub(super) fn tell_near_cells(
         cards.from_m.filter(|_| blocks.is_some())
     };
     cards.set_if_neq(CardRange { from_m });
-    let is_dressed =
-        |cell: Entity| children.get(cell).is_ok_and(|trees| trees.iter().all(|tree| dressed.contains(tree)));
+    let is_dressed = |cell: Entity| children.get(cell).is_ok_and(|trees| !trees.iter().any(|tree| bare.contains(tree)));
     forest.bypass_change_detection().near.note_dressed(is_dressed);
     let Some(centre) = viewpoints.iter().next().map(|eye| forest.planter().cell_at(eye.xz())) else { return };
     let words = square(centre, forest.planter().cell_m(), forest.settings().far_to_m, forest.near.dressed());
