@@ -2,8 +2,10 @@
 //!
 //! A camera flies through woods of 10 km x 10 km in an app without a renderer: cells are planted, trees come and go and
 //! get their models, near cells are culled, and every system of ours is timed. What a renderer adds (the levels, tables
-//! and cards of the trees near the camera) is not in these numbers. Beside it the same trees stand as plain entities that
-//! Bevy culls one by one.
+//! and cards of the trees near the camera) is not in these numbers, but in those of one more flight (`drawn`). Beside it the
+//! same trees stand as plain entities that Bevy culls one by one.
+
+mod drawn;
 
 use crate::report::Report;
 use bevy::{
@@ -48,6 +50,9 @@ pub fn run() -> Report {
     if let Err(error) = measure(&mut report) {
         eprintln!("{error}");
         report.at_most("frame_ms_median_1e6", f64::NAN, 1.0, "could not be measured");
+    }
+    if let Err(error) = drawn::run(&mut report) {
+        eprintln!("with a renderer: {error}");
     }
     report
 }

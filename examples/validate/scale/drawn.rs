@@ -1,0 +1,68 @@
+//! The same flight over a million trees with a renderer: what our systems take then, with levels, tables and cards.
+
+use super::{Flight, SIDE_M, median_and_p99, plan};
+use crate::{capture, report::Report};
+use bevy::{prelude::*, time::TimeUpdateStrategy};
+use bevy_windwood::{
+    SystemTimes,
+    forest::{FarBlocks, ForestCells},
+    prelude::*,
+    scatter::ForestPlan,
+};
+use std::time::{Duration, Instant};
+
+/// Small: what is drawn is not measured.
+const SIZE: (u32, u32) = (160, 90);
+/// Software Vulkan draws a few frames a second.
+const FRAMES: usize = 90;
+/// After so long something is amiss.
+const PATIENCE_S: f64 = 120.0;
+
+pub fn run(report: &mut Report) -> Result<(), String> {
+    let mut app = App::new();
+    app.add_plugins((capture::engine("scale", SIZE, true), WindwoodPlugins));
+    capture::begin(&mut app)?;
+    let canvas = capture::canvas(&mut app, SIZE);
+    let watcher = app.world_mut().spawn((Viewpoint, Transform::from_xyz(0.0, 15.0, 0.0))).id();
+    let plan = app.world_mut().resource_mut::<Assets<ForestPlan>>().add(plan(1e6));
+    let settings = ForestSettings { far_to_m: SIDE_M, cells_at_once: 16, ..default() };
+    app.world_mut().spawn((Forest::new(plan), settings));
+    let begun = Instant::now();
+    while !is_ready(app.world_mut()) {
+        app.update();
+        std::thread::sleep(Duration::from_millis(1));
+        if begun.elapsed().as_secs_f64() > PATIENCE_S {
+            return Err(format!("a forest of a million trees was not drawn in {PATIENCE_S} s"));
+        }
+    }
+    let all_s = begun.elapsed().as_secs_f64();
+    app.world_mut().despawn(watcher);
+    let mut flight = Flight::begin(&mut app);
+    app.world_mut().entity_mut(flight.camera).insert(capture::camera(&canvas));
+    (0..8).for_each(|_| capture::step(&mut app));
+
+    let frame = Duration::from_secs_f64(1.0 / 60.0);
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(frame));
+    let mut ours_ms = Vec::new();
+    for _ in 0..FRAMES {
+        flight.fly_on(&mut app);
+        capture::step(&mut app);
+        ours_ms.push(app.world().resource::<SystemTimes>().total().as_secs_f64() * 1e3);
+    }
+    let [median_ms, p99_ms] = median_and_p99(&ours_ms);
+    report.tell("drawn_frame_ms_median_1e6", median_ms, "all our systems, with a renderer");
+    report.tell("drawn_frame_ms_p99_1e6", p99_ms, "the same");
+    report.tell("drawn_all_s_1e6", all_s, "until every tree within 10 km stands or has its card");
+    let world = app.world_mut();
+    let blocks = world.query::<&FarBlocks>().single(world).map_err(|error| error.to_string())?;
+    report.tell("drawn_bytes_per_card", blocks.bytes() as f64 / blocks.trees() as f64, "on the graphics processor");
+    Ok(())
+}
+
+fn is_ready(world: &mut World) -> bool {
+    let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
+    world.query::<&ForestCells>().iter(world).any(ForestCells::is_complete)
+        && world.query::<&FarBlocks>().iter(world).any(FarBlocks::is_complete)
+        && world.resource::<ActiveSway>().is_ready()
+        && bare == 0
+}
