@@ -4,7 +4,10 @@ use crate::texture::TextureData;
 use bevy::{
     asset::RenderAssetUsages,
     image::{Image, ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor},
-    render::render_resource::{Extent3d, RenderPipelineDescriptor, TextureDimension, TextureFormat},
+    mesh::{MeshVertexBufferLayoutRef, VertexAttributeDescriptor},
+    render::render_resource::{
+        Extent3d, RenderPipelineDescriptor, SpecializedMeshPipelineError, TextureDimension, TextureFormat,
+    },
     utils::default,
 };
 
@@ -29,6 +32,19 @@ pub(crate) fn image(texture: &TextureData, address_mode: ImageAddressMode, coars
 
 /// A mip that no texture has: all are used.
 pub(crate) const ALL_MIPS: f32 = 32.0;
+
+/// Gives a pipeline vertices of these attributes, and defines names for its stages: one layout for the main pass, the prepass
+/// and the shadow pass, whose own vertex locations differ.
+pub(crate) fn lay_out(
+    descriptor: &mut RenderPipelineDescriptor,
+    layout: &MeshVertexBufferLayoutRef,
+    attributes: &[VertexAttributeDescriptor],
+    names: &[&'static str],
+) -> Result<(), SpecializedMeshPipelineError> {
+    descriptor.vertex.buffers = vec![layout.0.get_layout(attributes)?];
+    define(descriptor, names);
+    Ok(())
+}
 
 /// Defines names for the vertex stage and, where there is one, the fragment stage.
 pub(crate) fn define(descriptor: &mut RenderPipelineDescriptor, names: &[&'static str]) {

@@ -52,7 +52,7 @@ impl<S: System<In = (), Out = ()>> Adapt<S> for Timed {
 }
 
 /// A system that is watched: its time stands among the app's [`SystemTimes`] under that name.
-pub(crate) fn timed<Marker, S: IntoSystem<(), (), Marker>>(
+pub(crate) fn timed_as<Marker, S: IntoSystem<(), (), Marker>>(
     app: &mut App,
     name: &'static str,
     system: S,
@@ -64,6 +64,14 @@ pub(crate) fn timed<Marker, S: IntoSystem<(), (), Marker>>(
     app.world_mut().resource_mut::<SystemTimes>().0.push((name, nanoseconds.clone()));
     IntoAdapterSystem::new(Timed(nanoseconds), system)
 }
+
+/// Systems that are watched under their own names, as [`timed_as`] does.
+macro_rules! timed {
+    ($app:expr, $($system:ident),+ $(,)?) => {
+        ($($crate::timing::timed_as($app, stringify!($system), $system)),+)
+    };
+}
+pub(crate) use timed;
 
 /// A system that does not run takes no time.
 fn forget_times(times: Res<SystemTimes>) {
@@ -77,8 +85,8 @@ mod tests {
     #[test]
     fn a_system_that_takes_its_time_is_found_out() {
         let mut app = App::new();
-        let slow = timed(&mut app, "slow", || std::thread::sleep(Duration::from_millis(3)));
-        let never = timed(&mut app, "never", || {});
+        let slow = timed_as(&mut app, "slow", || std::thread::sleep(Duration::from_millis(3)));
+        let never = timed_as(&mut app, "never", || {});
         app.add_systems(Update, (slow, never.run_if(|| false)));
         app.update();
         let times: Vec<_> = app.world().resource::<SystemTimes>().iter().collect();

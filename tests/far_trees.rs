@@ -4,7 +4,6 @@ mod support;
 
 use bevy::prelude::*;
 use bevy_windwood::{
-    forest::{FarBlocks, ForestCells},
     prelude::*,
     scatter::{
         ForestPlan,
@@ -34,19 +33,13 @@ fn covered(settings: ForestSettings) -> usize {
     world.insert_resource(GlobalAmbientLight { brightness: 2000.0, ..default() });
     // The trees themselves, and not their lower levels.
     world.resource_mut::<LevelOfDetail>().style = LevelStyle::Full;
-    let wants_far = settings.far_to_m > 0.0;
     world.spawn((Forest::new(plan), settings));
     world.spawn((
         capture::camera(&canvas),
         Projection::Perspective(PerspectiveProjection { fov: 0.45, ..default() }),
         Transform::from_xyz(0.0, 12.0, 0.0).looking_at(Vec3::new(0.0, 9.0, -250.0), Vec3::Y),
     ));
-    let ready = support::update_until(&mut app, |world| {
-        let cells = world.query::<&ForestCells>().iter(world).any(ForestCells::is_complete);
-        let far = !wants_far || world.query::<&FarBlocks>().iter(world).any(FarBlocks::is_complete);
-        let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
-        cells && far && bare == 0
-    });
+    let ready = support::update_until(&mut app, capture::forests_are_drawn);
     assert!(ready, "the wood did not come about");
     // Meshes and pipelines of what has come last take frames of their own.
     (0..6).for_each(|_| capture::step(&mut app));

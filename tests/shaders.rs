@@ -43,3 +43,17 @@ fn the_times_of_a_leaf_are_the_same_in_both_languages() {
         assert_eq!(value(code, name), value(shader, name));
     }
 }
+
+#[test]
+fn the_ladder_of_ages_and_the_bits_of_a_tag_are_the_same_in_both_languages() {
+    let value = |text: &str, name: &str| -> String {
+        let line = text.lines().find(|line| line.starts_with(&format!("const {name}:"))).expect("it is there");
+        let value = line.split('=').nth(1).expect("it has a value").trim().trim_end_matches(';');
+        value.chars().filter(|c| *c != 'u').collect()
+    };
+    assert_eq!(value(include_str!("../src/sway/detail.rs"), "LADDER"), value(BEAM, "LADDER"));
+    let (code, shader) = (include_str!("../src/sway/draw.rs"), include_str!("../src/sway/shaders/sway.wgsl"));
+    for name in ["FADES_OUT", "FADES_IN", "CARDS_BEHIND"] {
+        assert_eq!(value(code, name), value(shader, name));
+    }
+}

@@ -1,18 +1,14 @@
 //! Ground, sky, sun and trees.
 
 use crate::{
+    capture,
     daylight::{self, spawn_daylight},
     landscape::{FINEST_CELL_M, Landscape},
     options::{Options, View},
     planting, wide,
 };
 use bevy::{pbr::DistanceFog, prelude::*};
-use bevy_windwood::{
-    forest::{FarBlocks, ForestCells},
-    prelude::*,
-    scatter::ForestPlan,
-    terrain::TerrainChunks,
-};
+use bevy_windwood::{prelude::*, scatter::ForestPlan, terrain::TerrainChunks};
 
 /// What pictures of it are called.
 pub fn name(_: &Options) -> &'static str {
@@ -66,19 +62,15 @@ pub fn is_ready(world: &mut World, options: &Options) -> Result<bool, String> {
     if let Some(tree) = world.query::<&Tree>().iter(world).find(|tree| assets.load_state(&tree.species).is_failed()) {
         return Err(format!("{:?} could not be loaded; the reason stands above", tree.species.path()));
     }
-    if options.extent.is_some() {
-        let cells = world.query::<&ForestCells>().iter(world).any(ForestCells::is_complete);
-        let far = options.far_to == 0.0 || world.query::<&FarBlocks>().iter(world).any(FarBlocks::is_complete);
-        let bald = world.query_filtered::<(), (With<GrassPatch>, Without<Mesh3d>)>().iter(world).count();
-        if !cells || !far || bald > 0 {
-            return Ok(false);
-        }
-    }
-    let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
+    let bald = world.query_filtered::<(), (With<GrassPatch>, Without<Mesh3d>)>().iter(world).count();
     let trees = world.query_filtered::<(), With<Tree>>().iter(world).count();
     let planted = trees > 0 || options.trees == 0;
     let grounded = world.query::<&TerrainChunks>().iter(world).all(TerrainChunks::is_complete);
-    Ok(world.resource::<ActiveSway>().is_ready() && planted && bare == 0 && grounded)
+    Ok(world.resource::<ActiveSway>().is_ready()
+        && planted
+        && bald == 0
+        && grounded
+        && capture::forests_are_drawn(world))
 }
 
 /// Spawns everything but the camera.

@@ -20,6 +20,11 @@ use bevy::{
     window::ExitCondition,
     winit::WinitPlugin,
 };
+use bevy_windwood::{
+    forest::{FarBlocks, ForestCells},
+    prelude::*,
+    sway::DrawPath,
+};
 use image::RgbaImage;
 use std::{
     path::Path,
@@ -71,6 +76,18 @@ pub fn canvas(app: &mut App, (width, height): (u32, u32)) -> Handle<Image> {
 pub fn camera(target: &Handle<Image>) -> impl Bundle {
     // Software Vulkan shades every sample of every small triangle: more pixels are cheaper than more samples.
     (Camera3d::default(), Msaa::Off, DepthPrepass, RenderTarget::Image(target.clone().into()))
+}
+
+/// Whether every forest has all that is wanted from where the viewers are: its trees, their meshes, and its cards.
+pub fn forests_are_drawn(world: &mut World) -> bool {
+    let draws_cards = world.get_resource::<DrawPath>().is_some_and(|path| path.sways);
+    let mut forests = world.query::<(&ForestSettings, Option<&ForestCells>, Option<&FarBlocks>)>();
+    let all = forests.iter(world).all(|(settings, cells, blocks)| {
+        let has_cards = !draws_cards || settings.far_to_m == 0.0 || blocks.is_some_and(FarBlocks::is_complete);
+        cells.is_some_and(ForestCells::is_complete) && has_cards
+    });
+    let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
+    all && bare == 0
 }
 
 /// One frame, rendered to the end.

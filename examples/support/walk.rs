@@ -7,7 +7,7 @@
 use crate::capture;
 use bevy::{camera::visibility::NoFrustumCulling, prelude::*};
 use bevy_windwood::{
-    forest::{FarBlocks, ForestCells, ForestCulling},
+    forest::ForestCulling,
     prelude::*,
     scatter::{
         ForestPlan,
@@ -80,19 +80,17 @@ struct Flat;
 #[derive(Resource)]
 struct Scale(u32);
 
+impl Technique {
+    fn has_cards(self) -> bool {
+        self.levels && self.style == LevelStyle::Thinned
+    }
+}
+
 fn settings(trees: u32, technique: Technique) -> ForestSettings {
     let all_m = 1.5 * side_m(trees);
-    ForestSettings {
-        trees_to_m: if technique.levels && technique.style == LevelStyle::Thinned { TREES_TO_M } else { all_m },
-        far_to_m: if technique.levels && technique.style == LevelStyle::Thinned {
-            all_m.max(2.0 * TREES_TO_M)
-        } else {
-            0.0
-        },
-        cells_at_once: 64,
-        trees_per_frame: 100_000,
-        ..default()
-    }
+    let (trees_to_m, far_to_m) =
+        if technique.has_cards() { (TREES_TO_M, all_m.max(2.0 * TREES_TO_M)) } else { (all_m, 0.0) };
+    ForestSettings { trees_to_m, far_to_m, cells_at_once: 64, trees_per_frame: 100_000, ..default() }
 }
 
 fn apply_technique(
@@ -167,12 +165,7 @@ fn catmull_rom([a, b, c, d]: [Vec2; 4], t: f32) -> Vec2 {
 
 /// Whether everything that is wanted from here is drawn.
 pub fn is_ready(world: &mut World) -> bool {
-    let technique = *world.resource::<Technique>();
-    let cells = world.query::<&ForestCells>().iter(world).any(ForestCells::is_complete);
-    let cards = technique.levels && technique.style == LevelStyle::Thinned;
-    let far = !cards || world.query::<&FarBlocks>().iter(world).any(FarBlocks::is_complete);
-    let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
-    world.resource::<ActiveSway>().is_ready() && cells && far && bare == 0
+    world.resource::<ActiveSway>().is_ready() && capture::forests_are_drawn(world)
 }
 
 /// Updates until all is drawn that is wanted from here; at most `most` times.

@@ -1,13 +1,14 @@
 //! Ground, woods, sky and sun.
 
 use crate::{
+    capture,
     daylight::{self, spawn_daylight},
     landscape::{FINEST_CELL_M, Landscape},
     options::{Options, View},
 };
 use bevy::{asset::LoadState, math::DVec2, pbr::DistanceFog, prelude::*};
 use bevy_windwood::{
-    forest::{FarBlocks, ForestCells, PlanCover},
+    forest::PlanCover,
     prelude::*,
     scatter::{ForestPlan, Planter},
     terrain::TerrainChunks,
@@ -48,7 +49,7 @@ pub fn haze() -> DistanceFog {
 }
 
 /// Whether the wind blows, the ground is there and every tree is drawn; an error if that will never be.
-pub fn is_ready(world: &mut World, options: &Options) -> Result<bool, String> {
+pub fn is_ready(world: &mut World, _: &Options) -> Result<bool, String> {
     let assets = world.resource::<AssetServer>().clone();
     let plan = world.query::<&Forest>().iter(world).map(|forest| assets.load_state(&forest.plan)).next();
     if let Some(LoadState::Failed(error)) = plan {
@@ -58,12 +59,7 @@ pub fn is_ready(world: &mut World, options: &Options) -> Result<bool, String> {
         return Err(format!("{:?} could not be loaded; the reason stands above", tree.species.path()));
     }
     let grounded = world.query::<&TerrainChunks>().iter(world).all(TerrainChunks::is_complete);
-    let planted = options.no_trees || world.query::<&ForestCells>().iter(world).any(ForestCells::is_complete);
-    let far = options.no_trees
-        || options.far_to == 0.0
-        || world.query::<&FarBlocks>().iter(world).any(FarBlocks::is_complete);
-    let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
-    Ok(world.resource::<ActiveSway>().is_ready() && grounded && planted && far && bare == 0)
+    Ok(world.resource::<ActiveSway>().is_ready() && grounded && capture::forests_are_drawn(world))
 }
 
 /// Spawns everything but the camera.

@@ -12,6 +12,7 @@ use super::{cell::Cell, store::CellStore};
 use crate::setting::{SettingError, require};
 use bevy::{
     math::{IVec2, Vec2, Vec3, Vec3Swizzles},
+    platform::collections::HashMap,
     reflect::Reflect,
 };
 use disc::{Disc, visit_difference};
@@ -94,6 +95,16 @@ impl CellSet for CellStore {
 
     fn visit(&self, visit: impl FnMut(IVec2)) {
         self.iter().map(|(cell, _)| cell).for_each(visit);
+    }
+}
+
+impl<T> CellSet for HashMap<IVec2, T> {
+    fn contains(&self, cell: IVec2) -> bool {
+        self.contains_key(&cell)
+    }
+
+    fn visit(&self, visit: impl FnMut(IVec2)) {
+        self.keys().copied().for_each(visit);
     }
 }
 

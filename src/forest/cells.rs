@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 /// What comes stays until a viewer is farther than this from it, over the distance at which it comes: who walks to and fro
 /// at a border makes nobody plant and clear.
-const HYSTERESIS: f32 = 1.15;
+pub(super) const HYSTERESIS: f32 = 1.15;
 /// Cells that a task plants one after another: one alone takes less than to send it away.
 const CELLS_OF_A_TASK: usize = 16;
 /// No more cells than this lie from a viewer to the border of what is kept: `CellStream` follows at most 512.

@@ -130,20 +130,16 @@ pub(super) fn measure_species(
     }
 }
 
-/// What is looked with in this frame: one view for each camera and sun.
-#[derive(Default)]
-pub(super) struct Views(Vec<Watch>);
-
 /// Shows the near cells that are seen, and hides those that are not.
 pub(super) fn cull_cells(
     settings: Res<ForestCulling>,
     cameras: Query<(&Camera, &Frustum, &GlobalTransform), With<Camera3d>>,
     suns: Query<(&DirectionalLight, &GlobalTransform, &CascadeShadowConfig)>,
-    mut views: Local<Views>,
+    mut views: Local<Vec<Watch>>,
     mut forests: Query<(&ForestCells, &mut Sights)>,
     mut cells: Query<&mut Visibility, With<ForestCell>>,
 ) {
-    let views = &mut views.0;
+    // One for each camera, and one more for each of its suns.
     views.clear();
     for (_, frustum, at) in cameras.iter().filter(|(camera, ..)| camera.is_active) {
         let view = View {
@@ -159,7 +155,7 @@ pub(super) fn cull_cells(
     for (forest, mut sights) in &mut forests {
         let sights = sights.bypass_change_detection();
         sights.renew(forest);
-        sights.look(*settings, views, |cell, shown| {
+        sights.look(*settings, &views, |cell, shown| {
             if let Ok(mut visibility) = cells.get_mut(cell) {
                 *visibility = if shown { Visibility::Inherited } else { Visibility::Hidden };
             }

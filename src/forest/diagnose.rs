@@ -13,34 +13,39 @@ use bevy::{
 /// [`WindwoodPlugins`](crate::WindwoodPlugins): add it, and a `LogDiagnosticsPlugin` or a display of your own.
 pub struct ForestDiagnosticsPlugin;
 
-/// Cells whose stems are known.
-pub const CELLS_PLANTED: DiagnosticPath = DiagnosticPath::const_new("windwood/cells_planted");
-/// Stems that are known.
-pub const STEMS: DiagnosticPath = DiagnosticPath::const_new("windwood/stems");
-/// Near cells: their trees are entities.
-pub const CELLS_NEAR: DiagnosticPath = DiagnosticPath::const_new("windwood/cells_near");
-/// Near cells that are seen, or whose shadows may be.
-pub const CELLS_SEEN: DiagnosticPath = DiagnosticPath::const_new("windwood/cells_seen");
-/// Trees that are drawn in full, at the first lower level, and at the second.
-pub const TREES: [DiagnosticPath; 3] = [
-    DiagnosticPath::const_new("windwood/trees_full"),
-    DiagnosticPath::const_new("windwood/trees_lower"),
-    DiagnosticPath::const_new("windwood/trees_lowest"),
-];
-/// Trees that wear two levels, one of which fades into the other.
-pub const TREES_FADING: DiagnosticPath = DiagnosticPath::const_new("windwood/trees_fading");
-/// Trees that have cards.
-pub const CARDS: DiagnosticPath = DiagnosticPath::const_new("windwood/cards");
-/// What the tables of trees, beams and poses, and the meshes of cards have on the graphics processor, bytes.
-pub const GPU_BYTES: DiagnosticPath = DiagnosticPath::const_new("windwood/gpu_bytes");
+impl ForestDiagnosticsPlugin {
+    /// Cells whose stems are known.
+    pub const CELLS_PLANTED: DiagnosticPath = DiagnosticPath::const_new("windwood/cells_planted");
+    /// Stems that are known.
+    pub const STEMS: DiagnosticPath = DiagnosticPath::const_new("windwood/stems");
+    /// Near cells: their trees are entities.
+    pub const CELLS_NEAR: DiagnosticPath = DiagnosticPath::const_new("windwood/cells_near");
+    /// Near cells that are seen, or whose shadows may be.
+    pub const CELLS_SEEN: DiagnosticPath = DiagnosticPath::const_new("windwood/cells_seen");
+    /// Trees that are drawn in full, at the first lower level, and at the second.
+    pub const TREES: [DiagnosticPath; 3] = [
+        DiagnosticPath::const_new("windwood/trees_full"),
+        DiagnosticPath::const_new("windwood/trees_lower"),
+        DiagnosticPath::const_new("windwood/trees_lowest"),
+    ];
+    /// Trees that wear two levels, one of which fades into the other.
+    pub const TREES_FADING: DiagnosticPath = DiagnosticPath::const_new("windwood/trees_fading");
+    /// Trees that have cards.
+    pub const CARDS: DiagnosticPath = DiagnosticPath::const_new("windwood/cards");
+    /// What the tables of trees, beams and poses, and the meshes of cards have on the graphics processor, bytes.
+    pub const GPU_BYTES: DiagnosticPath = DiagnosticPath::const_new("windwood/gpu_bytes");
+}
 
 impl Plugin for ForestDiagnosticsPlugin {
     fn build(&self, app: &mut App) {
-        let counts = [CELLS_PLANTED, STEMS, CELLS_NEAR, CELLS_SEEN, TREES_FADING, CARDS].into_iter().chain(TREES);
+        let counts =
+            [Self::CELLS_PLANTED, Self::STEMS, Self::CELLS_NEAR, Self::CELLS_SEEN, Self::TREES_FADING, Self::CARDS]
+                .into_iter()
+                .chain(Self::TREES);
         for path in counts {
             app.register_diagnostic(Diagnostic::new(path));
         }
-        app.register_diagnostic(Diagnostic::new(GPU_BYTES).with_suffix(" B"));
+        app.register_diagnostic(Diagnostic::new(Self::GPU_BYTES).with_suffix(" B"));
         app.add_systems(Last, (count_forest, time_systems));
     }
 }
@@ -50,18 +55,19 @@ fn count_forest(
     trees: TreesByLevel,
     mut diagnostics: Diagnostics,
 ) {
+    use ForestDiagnosticsPlugin as Is;
     let mut add = |path: &DiagnosticPath, value: usize| diagnostics.add_measurement(path, || value as f64);
     let sum = |of: fn(&ForestCells) -> usize| forests.iter().map(|(forest, ..)| of(forest)).sum();
-    add(&CELLS_PLANTED, sum(|forest| forest.store().len()));
-    add(&STEMS, sum(|forest| forest.store().plants()));
-    add(&CELLS_NEAR, sum(|forest| forest.near.entities().count()));
-    add(&CELLS_SEEN, forests.iter().filter_map(|(.., sights)| sights).map(Sights::seen).sum());
+    add(&Is::CELLS_PLANTED, sum(|forest| forest.store().len()));
+    add(&Is::STEMS, sum(|forest| forest.store().plants()));
+    add(&Is::CELLS_NEAR, sum(|forest| forest.near.entities().count()));
+    add(&Is::CELLS_SEEN, forests.iter().filter_map(|(.., sights)| sights).map(Sights::seen).sum());
     let (levels, fading) = trees.count();
-    TREES.iter().zip(levels).for_each(|(path, count)| add(path, count));
-    add(&TREES_FADING, fading);
+    Is::TREES.iter().zip(levels).for_each(|(path, count)| add(path, count));
+    add(&Is::TREES_FADING, fading);
     let blocks = || forests.iter().filter_map(|(_, blocks, _)| blocks);
-    add(&CARDS, blocks().map(FarBlocks::trees).sum());
-    add(&GPU_BYTES, trees.table_bytes() + blocks().map(FarBlocks::bytes).sum::<usize>());
+    add(&Is::CARDS, blocks().map(FarBlocks::trees).sum());
+    add(&Is::GPU_BYTES, trees.table_bytes() + blocks().map(FarBlocks::bytes).sum::<usize>());
 }
 
 /// One diagnostic a system, in microseconds.

@@ -6,7 +6,7 @@ use super::{
     extent::Extent,
 };
 use crate::{
-    cells::{CellSet, CellStream, Orders, StreamSettings, Viewpoint},
+    cells::{CellStream, Orders, StreamSettings, Viewpoint},
     scatter::Planted,
     setting::SettingError,
     tree::{Species, Tree},
@@ -27,15 +27,11 @@ pub(super) struct NearTrees {
     stream: CellStream,
     orders: Orders,
     planting: Vec<(IVec2, Task<Vec<Planted>>)>,
-    cells: NearCells,
+    cells: HashMap<IVec2, NearCell>,
     /// Cells whose trees are still to come, the first first.
     bare: Vec<IVec2>,
     changes: u64,
 }
-
-/// The cells that are there.
-#[derive(Default)]
-struct NearCells(HashMap<IVec2, NearCell>);
 
 struct NearCell {
     entity: Entity,
@@ -47,16 +43,6 @@ struct NearCell {
     dressed: bool,
     extent: Extent,
     articulated: bool,
-}
-
-impl CellSet for NearCells {
-    fn contains(&self, cell: IVec2) -> bool {
-        self.0.contains_key(&cell)
-    }
-
-    fn visit(&self, visit: impl FnMut(IVec2)) {
-        self.0.keys().copied().for_each(visit);
-    }
 }
 
 impl NearTrees {
@@ -76,7 +62,7 @@ impl NearTrees {
             stream: CellStream::new(stream, cell_m, bounds)?,
             orders: Orders::default(),
             planting: Vec::new(),
-            cells: NearCells::default(),
+            cells: HashMap::default(),
             bare: Vec::new(),
             changes: 0,
         })
@@ -87,13 +73,13 @@ impl NearTrees {
     }
 
     pub fn entities(&self) -> impl Iterator<Item = Entity> {
-        self.cells.0.values().map(|cell| cell.entity)
+        self.cells.values().map(|cell| cell.entity)
     }
 
     /// Notes those cells all of whose trees have come and are drawn, as `is_dressed` says.
     #[cfg(feature = "render")]
     pub fn note_dressed(&mut self, is_dressed: impl Fn(Entity) -> bool) {
-        for cell in self.cells.0.values_mut().filter(|cell| !cell.dressed && cell.planted.is_empty()) {
+        for cell in self.cells.values_mut().filter(|cell| !cell.dressed && cell.planted.is_empty()) {
             cell.dressed = is_dressed(cell.entity);
         }
     }
@@ -101,7 +87,7 @@ impl NearTrees {
     /// Cells all of whose trees are drawn.
     #[cfg(feature = "render")]
     pub fn dressed(&self) -> impl Iterator<Item = IVec2> {
-        self.cells.0.iter().filter(|(_, cell)| cell.dressed).map(|(cell, _)| *cell)
+        self.cells.iter().filter(|(_, cell)| cell.dressed).map(|(cell, _)| *cell)
     }
 
     /// Grows whenever a cell comes or goes.
@@ -113,13 +99,13 @@ impl NearTrees {
     /// Every cell in which something stands: its place, its entity and its extent.
     #[cfg(feature = "render")]
     pub fn planted(&self) -> impl Iterator<Item = (IVec2, Entity, &Extent)> {
-        let cells = self.cells.0.iter().map(|(cell, there)| (*cell, there.entity, &there.extent));
+        let cells = self.cells.iter().map(|(cell, there)| (*cell, there.entity, &there.extent));
         cells.filter(|(.., extent)| !extent.is_empty())
     }
 
     /// Mean height of the ground where a cell's trees stand, m; none where nothing grows.
     pub fn ground_m(&self, cell: IVec2) -> Option<f32> {
-        let extent = &self.cells.0.get(&cell)?.extent;
+        let extent = &self.cells.get(&cell)?.extent;
         (!extent.is_empty()).then(|| extent.mean_m())
     }
 
@@ -127,7 +113,7 @@ impl NearTrees {
     /// second.
     pub fn articulate(&mut self, eyes: &[Vec2], [from_m, to_m]: [f32; 2], mut tell: impl FnMut(Entity, bool)) {
         let Self { cells, cell_m, .. } = self;
-        for (cell, there) in cells.0.iter_mut().filter(|(_, there)| there.planted.is_empty()) {
+        for (cell, there) in cells.iter_mut().filter(|(_, there)| there.planted.is_empty()) {
             let corner = cell.as_vec2() * *cell_m;
             let to_eye = |eye: &Vec2| eye.clamp(corner, corner + *cell_m).distance(*eye);
             let distance_m = eyes.iter().map(to_eye).fold(f32::INFINITY, f32::min);
@@ -160,7 +146,7 @@ impl NearTrees {
                 raised: 0,
                 articulated: false,
             };
-            cells.0.insert(*cell, near);
+            cells.insert(*cell, near);
             *changes += 1;
             false
         });
@@ -169,7 +155,7 @@ impl NearTrees {
     /// Clears what nobody is near to any more.
     fn clear(&mut self, commands: &mut Commands) {
         for cell in &self.orders.drop {
-            if let Some(there) = self.cells.0.remove(cell) {
+            if let Some(there) = self.cells.remove(cell) {
                 commands.entity(there.entity).despawn();
                 self.changes += 1;
                 self.bare.retain(|bare| bare != cell);
@@ -182,7 +168,7 @@ impl NearTrees {
         #[cfg(feature = "render")]
         let has_cards = settings.far_to_m > 0.0;
         let mut left = settings.trees_per_frame as usize;
-        while let Some(cell) = self.bare.first().and_then(|cell| self.cells.0.get_mut(cell)).filter(|_| left > 0) {
+        while let Some(cell) = self.bare.first().and_then(|cell| self.cells.get_mut(cell)).filter(|_| left > 0) {
             let batch = left.min(cell.planted.len() - cell.raised);
             commands.entity(cell.entity).with_children(|parent| {
                 for plant in &cell.planted[cell.raised..cell.raised + batch] {
@@ -204,7 +190,7 @@ impl NearTrees {
     }
 }
 
-/// Keeps the cells near the viewers raised: trees come nearest first, and go one cell a frame.
+/// Keeps the cells near the viewers raised: trees come nearest first, and go a cell or so a frame.
 pub(super) fn raise_trees(
     mut commands: Commands,
     viewpoints: Viewpoints,

@@ -24,13 +24,7 @@ impl Plugin for ForestPlugin {
             .register_asset_reflect::<ForestPlan>()
             .register_type::<Forest>()
             .register_type::<ForestSettings>();
-        let stream = (
-            timed(app, "begin_forests", begin_forests),
-            timed(app, "plant_cells", plant_cells),
-            timed(app, "raise_trees", raise_trees),
-            timed(app, "give_winds", give_winds),
-            timed(app, "articulate_near", articulate_near),
-        );
+        let stream = timed!(app, begin_forests, plant_cells, raise_trees, give_winds, articulate_near);
         app.add_systems(Update, stream.chain().before(WindwoodSystems::Grow));
     }
 }

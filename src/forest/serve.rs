@@ -1,6 +1,9 @@
 //! What else the near cells of a forest serve: a wind of their own, and trees whose parts are entities.
 
-use super::{cells::ForestCells, components::ForestCell};
+use super::{
+    cells::{ForestCells, HYSTERESIS},
+    components::ForestCell,
+};
 use crate::{
     tree::{Articulated, Tree},
     viewpoint::Viewpoints,
@@ -10,8 +13,6 @@ use bevy::prelude::*;
 
 /// Height over the ground at which a cell feels the wind, m: where meteorologists measure it.
 const WIND_AT_M: f32 = 10.0;
-/// What is articulated stays so over so much more than the distance at which it came to be.
-const HYSTERESIS: f32 = 1.15;
 
 /// Gives near cells that have come a [`WindCell`] in their middle, where the settings ask for it.
 pub(super) fn give_winds(

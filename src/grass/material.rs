@@ -6,7 +6,7 @@ use super::{
     settings::GrassLook,
 };
 use crate::{
-    shading::define,
+    shading::lay_out,
     sway::{FLUTTER_PERIOD_S, StandTables},
 };
 use bevy::{
@@ -107,21 +107,19 @@ impl MaterialExtension for GrassExtension {
         GRASS_SHADER.into()
     }
 
-    /// Runs for the main pass, the prepass and the shadow pass; all get one vertex layout. Colours come out of the vertex
-    /// stage instead of the mesh.
+    /// Colours come out of the vertex stage instead of the mesh.
     fn specialize(
         _: &MaterialExtensionPipeline,
         descriptor: &mut RenderPipelineDescriptor,
         layout: &MeshVertexBufferLayoutRef,
         _: MaterialExtensionKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
-        descriptor.vertex.buffers = vec![layout.0.get_layout(&[
+        let attributes = [
             Mesh::ATTRIBUTE_POSITION.at_shader_location(0),
             Mesh::ATTRIBUTE_UV_0.at_shader_location(2),
             ATTRIBUTE_BLADE.at_shader_location(8),
             ATTRIBUTE_BLADE_TURN.at_shader_location(9),
-        ])?];
-        define(descriptor, &["WINDWOOD_GRASS", "VERTEX_COLORS"]);
-        Ok(())
+        ];
+        lay_out(descriptor, layout, &attributes, &["WINDWOOD_GRASS", "VERTEX_COLORS"])
     }
 }

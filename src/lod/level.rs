@@ -22,7 +22,7 @@ pub enum Level {
     Ground,
 }
 
-pub(crate) const LEVELS: [Level; 4] = [Level::High, Level::Medium, Level::Low, Level::Ground];
+const LEVELS: [Level; 4] = [Level::High, Level::Medium, Level::Low, Level::Ground];
 
 /// How large on screen a tree must be for each level.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]

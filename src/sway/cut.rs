@@ -55,7 +55,8 @@ pub(super) enum Cloth {
     /// Bark that fades into another level; it needs a mask, which costs.
     FadingBark,
     Foliage,
-    Envelope(Box<EnvelopeCloth>),
+    /// An envelope of leaves in this texture.
+    Envelope(Box<TextureData>),
     /// Linear colours of trunk and crown.
     Plain([[f32; 3]; 2]),
 }
@@ -65,11 +66,6 @@ impl Cloth {
     pub fn fades(&self) -> bool {
         !matches!(self, Self::Bark)
     }
-}
-
-/// What an envelope of leaves wears.
-pub(super) struct EnvelopeCloth {
-    pub colour: TextureData,
 }
 
 /// Cuts the levels of a style for each variant; with `painting`, paints the species, too.
@@ -129,7 +125,7 @@ fn paper_levels(
     let colours = [four.colours.first(), four.colours.last()].map(|colour| colour.copied().unwrap_or([0.1; 3]));
     let low = Piece { mesh: plain_mesh(four), cloth: Cloth::Plain(colours) };
     let medium = cylinder.map(|CylinderLevel { envelope, trunk, colour, images, .. }| {
-        let cloth = Cloth::Envelope(Box::new(EnvelopeCloth { colour }));
+        let cloth = Cloth::Envelope(Box::new(colour));
         LevelCut {
             wood: Piece { mesh: wood_mesh(trunk), cloth: Cloth::FadingBark },
             leaves: Some(Piece { mesh: envelope_mesh(envelope, images), cloth }),

@@ -37,9 +37,11 @@ impl Plugin for SwayDrawPlugin {
             return;
         }
         load_shader_library!(app, "shaders/beam.wgsl");
+        load_shader_library!(app, "shaders/eye.wgsl");
         load_shader_library!(app, "shaders/leaf.wgsl");
         load_shader_library!(app, "shaders/level.wgsl");
         load_shader_library!(app, "shaders/season.wgsl");
+        load_shader_library!(app, "shaders/written.wgsl");
         embedded_asset!(app, "shaders/foliage.wgsl");
         embedded_asset!(app, "shaders/mask.wgsl");
         load_shader_library!(app, "shaders/wind.wgsl");
@@ -70,21 +72,14 @@ impl Plugin for SwayDrawPlugin {
                         .before(VisibilitySystems::CheckVisibility),
                 ),
             );
-        let dress = (
-            timed(app, "look_about", look_about),
-            timed(app, "start_tailoring", start_tailoring).after(receive_models),
-            timed(app, "finish_tailoring", finish_tailoring),
-            timed(app, "choose_levels", choose_levels),
-            timed(app, "dress_trees", dress_trees),
+        let dress = timed!(app, look_about, start_tailoring, finish_tailoring, choose_levels, dress_trees);
+        let dress =
+            dress.chain().after(receive_models).in_set(WindwoodSystems::Grow).run_if(resource_exists::<DrawPath>);
+        let upload = timed!(app, upload_winds, place_trees, wake_trees, upload_frame);
+        app.add_systems(Update, dress).add_systems(
+            PostUpdate,
+            upload.chain().after(VisibilitySystems::VisibilityPropagate).in_set(WindwoodSystems::Upload),
         );
-        let dress = dress.chain().in_set(WindwoodSystems::Grow).run_if(resource_exists::<DrawPath>);
-        let upload = (
-            timed(app, "upload_winds", upload_winds),
-            timed(app, "place_trees", place_trees),
-            timed(app, "wake_trees", wake_trees).after(VisibilitySystems::VisibilityPropagate),
-            timed(app, "upload_frame", upload_frame),
-        );
-        app.add_systems(Update, dress).add_systems(PostUpdate, upload.chain().in_set(WindwoodSystems::Upload));
     }
 
     /// The renderer knows its device only now.

@@ -1,7 +1,11 @@
 //! The material that poses trees in the vertex shader.
 
 use super::active::FLUTTER_PERIOD_S;
-use crate::{dynamics::leaf::LeafResponse, shading::define, tree::phenology::Phenology};
+use crate::{
+    dynamics::leaf::LeafResponse,
+    shading::{define, lay_out},
+    tree::phenology::Phenology,
+};
 use bevy::{
     mesh::{MeshVertexAttribute, MeshVertexBufferLayoutRef, VertexFormat},
     pbr::{ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline},
@@ -165,16 +169,15 @@ impl MaterialExtension for SwayExtension {
         if envelope {
             attributes.push(Mesh::ATTRIBUTE_UV_1.at_shader_location(3));
         }
-        descriptor.vertex.buffers = vec![layout.0.get_layout(&attributes)?];
 
-        // The second coordinates carry the season of a leaf to its fragments.
-        if leaves {
-            define(descriptor, &["WINDWOOD_LEAVES", "VERTEX_UVS_B"]);
-        } else if envelope {
-            define(descriptor, &["WINDWOOD_ENVELOPE", "VERTEX_UVS_B"]);
-        }
-        // The dither of levels takes the place, among the vertex stage's results, of that of Bevy's own ranges.
-        define(descriptor, &["VERTEX_COLORS", "VERTEX_TANGENTS", "VISIBILITY_RANGE_DITHER"]);
-        Ok(())
+        // The second coordinates carry the season of a leaf to its fragments; the dither of levels takes the place, among the
+        // vertex stage's results, of that of Bevy's own ranges.
+        let own: &[&str] = match (leaves, envelope) {
+            (true, _) => &["WINDWOOD_LEAVES", "VERTEX_UVS_B"],
+            (_, true) => &["WINDWOOD_ENVELOPE", "VERTEX_UVS_B"],
+            _ => &[],
+        };
+        define(descriptor, own);
+        lay_out(descriptor, layout, &attributes, &["VERTEX_COLORS", "VERTEX_TANGENTS", "VISIBILITY_RANGE_DITHER"])
     }
 }

@@ -1,13 +1,14 @@
 //! The materials of a species: bark, foliage, and what its lower levels wear.
 
 use super::{
-    cut::{Cloth, EnvelopeCloth},
+    cut::Cloth,
     draw::DrawPath,
     material::{LeafUniform, SeasonUniform, SwayExtension, SwayMaterial},
     upload::StandBuffers,
 };
 use crate::{
     shading::{ALL_MIPS, image},
+    texture::TextureData,
     tree::{Species, bark::BarkTextures, growth::Growth, painting::SpeciesTextures},
 };
 use bevy::{
@@ -78,8 +79,8 @@ impl Dyer<'_> {
             Cloth::Bark => outfits.bark.clone(),
             Cloth::FadingBark => outfits.fading_bark.clone(),
             Cloth::Foliage => outfits.foliage.clone(),
-            Cloth::Envelope(textures) => {
-                let material = self.envelope(textures, outfits.translucency);
+            Cloth::Envelope(colour) => {
+                let material = self.envelope(colour, outfits.translucency);
                 self.outfit(material, &outfits.extension)
             }
             Cloth::Plain(colours) => {
@@ -116,7 +117,7 @@ impl Dyer<'_> {
         }
     }
 
-    fn envelope(&mut self, EnvelopeCloth { colour }: &EnvelopeCloth, translucency: f32) -> StandardMaterial {
+    fn envelope(&mut self, colour: &TextureData, translucency: f32) -> StandardMaterial {
         let colour = self.images.add(image(colour, ImageAddressMode::Repeat, ALL_MIPS));
         StandardMaterial { base_color_texture: Some(colour), ..leafy(translucency) }
     }

@@ -18,10 +18,10 @@ impl Plugin for SwayPlugin {
             .init_resource::<ActiveSway>()
             .configure_sets(PostUpdate, WindwoodSystems::Pose.before(TransformSystems::Propagate))
             .configure_sets(PostUpdate, WindwoodSystems::Pose.run_if(is_windy));
-        let tables = (timed(app, "rebuild_tables", rebuild_tables), timed(app, "fade_tables", fade_tables));
-        let articulate = timed(app, "articulate_trees", articulate_trees);
-        let pose_trees = timed(app, "pose_trees", pose_trees);
-        let pose_parts = (timed(app, "pose_beams", pose_beams), timed(app, "turn_leaves", turn_leaves));
+        let tables = timed!(app, rebuild_tables, fade_tables);
+        let articulate = timed!(app, articulate_trees);
+        let pose_trees = timed!(app, pose_trees);
+        let pose_parts = timed!(app, pose_beams, turn_leaves);
         app.add_systems(PreUpdate, tables.chain().after(WindwoodSystems::AdvanceWind))
             .add_systems(Update, articulate.after(WindwoodSystems::Grow))
             .add_systems(PostUpdate, (pose_trees, pose_parts).chain().in_set(WindwoodSystems::Pose));

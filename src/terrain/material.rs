@@ -1,7 +1,7 @@
 //! The material of the ground.
 
 use super::components::GroundLook;
-use crate::shading::define;
+use crate::shading::lay_out;
 use bevy::{
     material::OpaqueRendererMethod,
     mesh::{MeshVertexAttribute, MeshVertexBufferLayoutRef, VertexFormat},
@@ -105,20 +105,18 @@ impl MaterialExtension for GroundExtension {
         COLOUR_SHADER.into()
     }
 
-    /// One layout for the main pass, the prepass and the shadow pass, whose own vertex locations differ.
     fn specialize(
         _: &MaterialExtensionPipeline,
         descriptor: &mut RenderPipelineDescriptor,
         layout: &MeshVertexBufferLayoutRef,
         _: MaterialExtensionKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
-        descriptor.vertex.buffers = vec![layout.0.get_layout(&[
+        let attributes = [
             Mesh::ATTRIBUTE_POSITION.at_shader_location(0),
             Mesh::ATTRIBUTE_NORMAL.at_shader_location(1),
             ATTRIBUTE_MARKS.at_shader_location(8),
-        ])?];
+        ];
         // The colour of a vertex carries the woods to its fragments.
-        define(descriptor, &["VERTEX_COLORS"]);
-        Ok(())
+        lay_out(descriptor, layout, &attributes, &["VERTEX_COLORS"])
     }
 }

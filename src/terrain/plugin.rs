@@ -23,11 +23,7 @@ impl Plugin for TerrainDrawPlugin {
             .register_type::<TerrainSettings>()
             .register_type::<GroundLook>()
             .init_resource::<GroundTexture>();
-        let stream = (
-            timed(app, "begin_terrains", begin_terrains),
-            timed(app, "recolour", recolour),
-            timed(app, "stream_ground", stream_ground),
-        );
+        let stream = timed!(app, begin_terrains, recolour, stream_ground);
         app.add_systems(Update, stream.chain().in_set(WindwoodSystems::Grow));
     }
 }

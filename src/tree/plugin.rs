@@ -28,11 +28,7 @@ impl Plugin for TreePlugin {
             .init_resource::<Season>()
             .init_resource::<Grove>()
             .add_message::<SpeciesBaked>();
-        let grow = (
-            timed(app, "adopt_species", adopt_species),
-            timed(app, "receive_models", receive_models),
-            timed(app, "grow_trees", grow_trees),
-        );
+        let grow = timed!(app, adopt_species, receive_models, grow_trees);
         app.add_systems(Update, grow.chain().in_set(WindwoodSystems::Grow));
     }
 }

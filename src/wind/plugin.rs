@@ -19,13 +19,7 @@ impl Plugin for WindPlugin {
             .init_resource::<Wind>()
             .init_resource::<WindClock>()
             .insert_resource(ActiveWind::calm());
-        let advance = (
-            timed(app, "advance_clock", advance_clock),
-            timed(app, "rebuild_field", rebuild_field),
-            timed(app, "receive_field", receive_field),
-            timed(app, "fade_field", fade_field),
-            timed(app, "sample_wind_cells", sample_wind_cells),
-        );
+        let advance = timed!(app, advance_clock, rebuild_field, receive_field, fade_field, sample_wind_cells);
         app.add_systems(PreUpdate, advance.chain().in_set(WindwoodSystems::AdvanceWind));
     }
 }

@@ -3,13 +3,11 @@
 use super::{capture, headless_app, update_until};
 use bevy::{prelude::*, render::render_resource::WgpuLimits};
 use bevy_windwood::{
-    forest::{FarBlocks, ForestCells},
     prelude::*,
     scatter::{
         ForestPlan,
         plan::{Area, Shape, Stock},
     },
-    sway::DrawPath,
 };
 use image::RgbaImage;
 use std::time::Duration;
@@ -41,16 +39,11 @@ impl Wood {
         let plan = world.resource_mut::<Assets<ForestPlan>>().add(plan);
         world.insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
         world.insert_resource(GlobalAmbientLight { brightness: 900.0, ..default() });
-        let wants_far = settings.far_to_m > 0.0;
         world.spawn((Forest::new(plan), ForestSettings { trees_per_frame: 10_000, cells_at_once: 64, ..settings }));
         let eye = Transform::from_xyz(0.0, 12.0, 0.0).looking_to(Vec3::NEG_Z, Vec3::Y);
         let camera = world.spawn((capture::camera(&canvas), eye)).id();
         let ready = update_until(&mut app, |world| {
-            let wants_far = wants_far && world.resource::<DrawPath>().sways;
-            let cells = world.query::<&ForestCells>().iter(world).any(ForestCells::is_complete);
-            let far = !wants_far || world.query::<&FarBlocks>().iter(world).any(FarBlocks::is_complete);
-            let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
-            cells && far && bare == 0 && world.resource::<ActiveSway>().is_ready()
+            world.resource::<ActiveSway>().is_ready() && capture::forests_are_drawn(world)
         });
         assert!(ready, "the forest did not come about");
         Self { app, camera, canvas }

@@ -3,7 +3,6 @@
 use crate::capture;
 use bevy::prelude::*;
 use bevy_windwood::{
-    forest::{FarBlocks, ForestCells},
     lod::LevelDistances,
     prelude::*,
     scatter::{
@@ -176,11 +175,8 @@ impl Stand {
 }
 
 fn is_ready(world: &mut World) -> bool {
-    let cells = world.query::<&ForestCells>().iter(world).any(ForestCells::is_complete);
-    let cards = world.query::<&FarBlocks>().iter(world).any(FarBlocks::is_complete);
-    let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
     let trees = world.query_filtered::<(), With<Tree>>().iter(world).count();
-    world.resource::<ActiveSway>().is_ready() && cells && cards && bare == 0 && trees > 0
+    world.resource::<ActiveSway>().is_ready() && trees > 0 && capture::forests_are_drawn(world)
 }
 
 /// Some eight trees of one size in a row across the view.

@@ -3,12 +3,7 @@
 use super::{Flight, SIDE_M, median_and_p99, plan};
 use crate::{capture, report::Report};
 use bevy::{prelude::*, time::TimeUpdateStrategy};
-use bevy_windwood::{
-    SystemTimes,
-    forest::{FarBlocks, ForestCells},
-    prelude::*,
-    scatter::ForestPlan,
-};
+use bevy_windwood::{SystemTimes, forest::FarBlocks, prelude::*, scatter::ForestPlan};
 use std::time::{Duration, Instant};
 
 /// Small: what is drawn is not measured.
@@ -60,9 +55,5 @@ pub fn run(report: &mut Report) -> Result<(), String> {
 }
 
 fn is_ready(world: &mut World) -> bool {
-    let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
-    world.query::<&ForestCells>().iter(world).any(ForestCells::is_complete)
-        && world.query::<&FarBlocks>().iter(world).any(FarBlocks::is_complete)
-        && world.resource::<ActiveSway>().is_ready()
-        && bare == 0
+    world.resource::<ActiveSway>().is_ready() && capture::forests_are_drawn(world)
 }

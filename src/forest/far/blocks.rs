@@ -5,7 +5,7 @@ use super::{
     mesh::{FarTree, block_mesh},
 };
 use crate::{
-    cells::{CellSet, CellStream, Orders, StreamSettings, Viewpoint},
+    cells::{CellStream, Orders, StreamSettings, Viewpoint},
     forest::cells::{ForestCells, reaching},
     scatter::Planted,
     setting::SettingError,
@@ -35,12 +35,8 @@ pub struct FarBlocks {
     stream: CellStream,
     orders: Orders,
     planting: Vec<(IVec2, Task<Vec<Drawn>>)>,
-    blocks: Blocks,
+    blocks: HashMap<IVec2, Block>,
 }
-
-/// The blocks that are there.
-#[derive(Default)]
-struct Blocks(HashMap<IVec2, Block>);
 
 #[derive(Default)]
 struct Block {
@@ -61,16 +57,6 @@ struct Drawn {
 /// A mesh of far trees; a child of the forest.
 #[derive(Component)]
 pub(super) struct FarBlock;
-
-impl CellSet for Blocks {
-    fn contains(&self, block: IVec2) -> bool {
-        self.0.contains_key(&block)
-    }
-
-    fn visit(&self, visit: impl FnMut(IVec2)) {
-        self.0.keys().copied().for_each(visit);
-    }
-}
 
 impl FarBlocks {
     fn new(forest: &ForestCells) -> Result<Self, SettingError> {
@@ -94,7 +80,7 @@ impl FarBlocks {
             stream: CellStream::new(stream, side_m, bounds)?,
             orders: Orders::default(),
             planting: Vec::new(),
-            blocks: Blocks::default(),
+            blocks: HashMap::default(),
         })
     }
 
@@ -107,17 +93,17 @@ impl FarBlocks {
     /// Trees that are drawn as cards, near ones among them.
     #[must_use]
     pub fn trees(&self) -> usize {
-        self.blocks.0.values().map(|block| block.trees).sum()
+        self.blocks.values().map(|block| block.trees).sum()
     }
 
     /// What their meshes have on the graphics processor, bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        self.blocks.0.values().map(|block| block.bytes).sum()
+        self.blocks.values().map(|block| block.bytes).sum()
     }
 
     fn meshes(&self) -> impl Iterator<Item = Entity> {
-        self.blocks.0.values().flat_map(|block| block.meshes.iter().copied())
+        self.blocks.values().flat_map(|block| block.meshes.iter().copied())
     }
 }
 
@@ -152,7 +138,7 @@ pub(super) fn stream_far(
         let blocks = &mut *blocks;
         blocks.receive(entity, forest, &looks, *path, &mut commands, &mut meshes);
         blocks.stream.step(&places, &blocks.blocks, &mut blocks.orders);
-        for gone in blocks.orders.drop.iter().filter_map(|block| blocks.blocks.0.remove(block)) {
+        for gone in blocks.orders.drop.iter().filter_map(|block| blocks.blocks.remove(block)) {
             gone.meshes.into_iter().for_each(|mesh| commands.entity(mesh).despawn());
         }
         for &block in &blocks.orders.plant {
@@ -249,7 +235,7 @@ impl FarBlocks {
                 }
                 block.meshes.push(spawned.id());
             }
-            blocks.0.insert(*place, block);
+            blocks.insert(*place, block);
             false
         });
     }

@@ -3,7 +3,7 @@
 use super::mesh::ATTRIBUTE_FAR;
 use crate::{
     lod::ViewAtlas,
-    shading::{define, image},
+    shading::{image, lay_out},
     sway::{SeasonUniform, StandTables},
     tree::Species,
 };
@@ -114,20 +114,15 @@ impl MaterialExtension for FarExtension {
         MASK_SHADER.into()
     }
 
-    /// One layout for the main pass, the prepass and the shadow pass, whose own vertex locations differ.
     fn specialize(
         _: &MaterialExtensionPipeline,
         descriptor: &mut RenderPipelineDescriptor,
         layout: &MeshVertexBufferLayoutRef,
         _: MaterialExtensionKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
-        descriptor.vertex.buffers = vec![
-            layout
-                .0
-                .get_layout(&[Mesh::ATTRIBUTE_POSITION.at_shader_location(0), ATTRIBUTE_FAR.at_shader_location(8)])?,
-        ];
+        let attributes = [Mesh::ATTRIBUTE_POSITION.at_shader_location(0), ATTRIBUTE_FAR.at_shader_location(8)];
         // Coordinates and colour carry the place on the tree and the direction to the eye to the fragments.
-        define(descriptor, &["VERTEX_UVS_A", "VERTEX_UVS_B", "VERTEX_COLORS", "VISIBILITY_RANGE_DITHER"]);
-        Ok(())
+        let names = ["VERTEX_UVS_A", "VERTEX_UVS_B", "VERTEX_COLORS", "VISIBILITY_RANGE_DITHER"];
+        lay_out(descriptor, layout, &attributes, &names)
     }
 }

@@ -27,7 +27,7 @@ pub struct ForestDrawPlugin;
 
 impl Plugin for ForestDrawPlugin {
     fn build(&self, app: &mut App) {
-        let cull = (timed(app, "measure_species", measure_species), timed(app, "cull_cells", cull_cells));
+        let cull = timed!(app, measure_species, cull_cells);
         app.add_plugins(ForestGizmoPlugin)
             .register_type::<ForestCulling>()
             .init_resource::<ForestCulling>()
@@ -46,8 +46,8 @@ impl Plugin for ForestDrawPlugin {
         app.add_plugins(MaterialPlugin::<FarMaterial>::default())
             .init_resource::<NearCells>()
             .init_resource::<FarLooks>();
-        let stream = (timed(app, "bake_far_looks", bake_far_looks), timed(app, "stream_far", stream_far));
-        let tell = timed(app, "tell_near_cells", tell_near_cells);
+        let stream = timed!(app, bake_far_looks, stream_far);
+        let tell = timed!(app, tell_near_cells);
         app.add_systems(Update, stream.chain().after(plant_cells).run_if(can_draw))
             .add_systems(PostUpdate, tell.before(WindwoodSystems::Upload));
     }

@@ -4,8 +4,8 @@
 #import bevy_pbr::mesh_view_bindings::view
 #import bevy_pbr::pbr_bindings::{base_color_sampler, base_color_texture, material}
 #import bevy_pbr::pbr_functions
-#import bevy_pbr::pbr_prepass_functions
 #import bevy_pbr::prepass_io
+#import bevy_windwood::written
 
 #ifdef WINDWOOD_LEAVES
 #import bevy_windwood::{leaf, season}
@@ -45,18 +45,7 @@ fn cut_out(in: prepass_io::VertexOutput) {
 @fragment
 fn fragment(in: prepass_io::VertexOutput) -> prepass_io::FragmentOutput {
     cut_out(in);
-    var out: prepass_io::FragmentOutput;
-#ifdef UNCLIPPED_DEPTH_ORTHO_EMULATION
-    out.frag_depth = in.unclipped_depth;
-#endif
-#ifdef NORMAL_PREPASS
-    out.normal = vec4(in.world_normal * 0.5 + vec3(0.5), 1.0);
-#endif
-#ifdef MOTION_VECTOR_PREPASS
-    out.motion_vector =
-        pbr_prepass_functions::calculate_motion_vector(in.world_position, in.previous_world_position);
-#endif
-    return out;
+    return written::of_fragment(in);
 }
 #else
 @fragment

@@ -6,6 +6,7 @@
 #import bevy_pbr::mesh_view_bindings::view
 #import bevy_pbr::view_transformations::position_world_to_clip
 #import bevy_windwood::beam
+#import bevy_windwood::eye
 #import bevy_windwood::level
 
 #ifdef WINDWOOD_LEAVES
@@ -47,7 +48,7 @@ struct Vertex {
 @group(#{MATERIAL_BIND_GROUP}) @binding(102) var<storage, read> trees: array<beam::TreeRow>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(103) var<storage, read> frame: beam::Frame;
 
-// The instance tag, see `Tag` in `sway/draw.rs`: the tree's row, its level, how that fades, and a tint.
+// The instance tag, see `Dress::put` in `sway/draw.rs`: the tree's row, its level, how that fades, and a tint.
 const TREE_BITS: u32 = 16u;
 const FADES_OUT: u32 = 1u << 18u;
 const FADES_IN: u32 = 1u << 19u;
@@ -76,14 +77,6 @@ fn dither_of(tag: u32, tree: beam::TreeRow) -> i32 {
         return level::gone(distance_m, beam::tree_end_m(frame, height_m), frame.fade);
     }
     return 0;
-}
-
-fn direction_to_eye(place: vec3<f32>) -> vec3<f32> {
-    // The last element is 1 where rays are parallel, as those of the sun are.
-    if view.clip_from_view[3].w == 1.0 {
-        return view.world_from_view[2].xyz;
-    }
-    return normalize(view.world_position - place);
 }
 
 #ifdef WINDWOOD_LEAVES
@@ -189,7 +182,7 @@ fn vertex(in: Vertex) -> VertexOutput {
 #endif
 #ifdef WINDWOOD_LEAVES
     // Billows: what the mask is multiplied with. Sprays: how much of the leaves is there.
-    let outline = leaf::silhouette_alpha(dot(normal, direction_to_eye(out.world_position.xyz)));
+    let outline = leaf::silhouette_alpha(dot(normal, eye::direction_to_eye(out.world_position.xyz)));
     out.color.a = select(select(state.size, 1.0, state.drifting), outline, leaf::is_billow());
 #endif
 #endif

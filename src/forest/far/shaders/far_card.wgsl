@@ -3,7 +3,7 @@
 #import bevy_pbr::mesh_functions
 #import bevy_pbr::mesh_view_bindings::view
 #import bevy_pbr::view_transformations::position_world_to_clip
-#import bevy_windwood::{beam, far, level}
+#import bevy_windwood::{beam, eye, far, level}
 
 #ifdef PREPASS_PIPELINE
 #import bevy_pbr::prepass_io::VertexOutput
@@ -52,18 +52,6 @@ fn dither_of(foot: vec3<f32>, height_m: f32) -> i32 {
     return level::gone(distance_m, farthest_m / (1.0 + frame.fade), frame.fade);
 }
 
-// Whether rays are parallel, as those of the sun are.
-fn is_parallel() -> bool {
-    return view.clip_from_view[3].w == 1.0;
-}
-
-fn direction_to_eye(place: vec3<f32>) -> vec3<f32> {
-    if is_parallel() {
-        return view.world_from_view[2].xyz;
-    }
-    return normalize(view.world_position - place);
-}
-
 @vertex
 fn vertex(in: Vertex) -> VertexOutput {
     var out: VertexOutput;
@@ -75,12 +63,12 @@ fn vertex(in: Vertex) -> VertexOutput {
     let tint = f32((in.code >> 22u) & 255u) / 255.0;
 
     let centre = foot + far::turned(far::views.centre, turn) * size;
-    let to_eye = far::above_horizon(far::turned(direction_to_eye(centre), -turn));
+    let to_eye = far::above_horizon(far::turned(eye::direction_to_eye(centre), -turn));
     let facing = far::basis_towards(to_eye);
     let half = far::half_m(facing);
     let point = far::views.centre + facing.right * (corner.x * half.x) + facing.up * (corner.y * half.y);
     out.world_position = vec4(foot + far::turned(point, turn) * size, 1.0);
-    if is_parallel() {
+    if eye::is_parallel() {
         // The card that casts the shadow stands behind the tree: else it would darken half of the card that is seen.
         out.world_position = vec4(out.world_position.xyz - view.world_from_view[2].xyz * (far::views.radius_m * size), 1.0);
     }
