@@ -66,7 +66,7 @@ use bevy::app::{PluginGroup, PluginGroupBuilder};
 /// What a game needs: `use bevy_windwood::prelude::*;`.
 pub mod prelude {
     #[cfg(feature = "render")]
-    pub use crate::sway::{LevelOfDetail, LevelStyle};
+    pub use crate::sway::{LevelOfDetail, LevelStyle, TreeLighting};
     pub use crate::{
         Viewpoint, WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
         fire::{Fire, FireLook, FireShape},

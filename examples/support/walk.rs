@@ -5,7 +5,10 @@
 #![allow(dead_code)]
 
 use crate::capture;
-use bevy::{camera::visibility::NoFrustumCulling, prelude::*};
+use bevy::{
+    camera::visibility::NoFrustumCulling, core_pipeline::prepass::DepthPrepass, light::ShadowFilteringMethod,
+    prelude::*,
+};
 use bevy_windwood::{
     forest::ForestCulling,
     prelude::*,
@@ -71,6 +74,8 @@ pub fn build(app: &mut App, trees: u32, technique: Technique) {
     world.insert_resource(ClearColor(Color::srgb(0.62, 0.75, 0.9)));
     world.insert_resource(Scale(trees));
     world.insert_resource(technique);
+    // There is but a sun, and on software Vulkan all other lights would be paid for.
+    world.insert_resource(TreeLighting::SunOnly);
     app.add_systems(Update, apply_technique).add_systems(PostUpdate, leave_culling_to_cells);
 }
 
@@ -137,7 +142,7 @@ pub fn camera(target: Option<&Handle<Image>>) -> impl Bundle + use<> {
     let target = target.map_or_else(bevy::camera::RenderTarget::default, |image| {
         bevy::camera::RenderTarget::Image(image.clone().into())
     });
-    (Camera3d::default(), Msaa::Off, bevy::core_pipeline::prepass::DepthPrepass, target, lens)
+    (Camera3d::default(), Msaa::Off, DepthPrepass, ShadowFilteringMethod::Hardware2x2, target, lens)
 }
 
 /// Where the walker is at a time, s.

@@ -5,6 +5,7 @@ use super::{
     compute::{PoseJob, STORAGE_BUFFERS_NEEDED},
     detail::{CardRange, LevelOfDetail, Sight, look_about},
     draw::{DrawPath, choose_levels, dress_trees},
+    lighting::{TreeLighting, relight},
     looks::{SpeciesDressed, Tailoring, Wardrobe, finish_tailoring, start_tailoring},
     material::SwayMaterial,
     mend,
@@ -40,6 +41,7 @@ impl Plugin for SwayDrawPlugin {
         load_shader_library!(app, "shaders/eye.wgsl");
         load_shader_library!(app, "shaders/leaf.wgsl");
         load_shader_library!(app, "shaders/level.wgsl");
+        load_shader_library!(app, "shaders/light.wgsl");
         load_shader_library!(app, "shaders/season.wgsl");
         load_shader_library!(app, "shaders/written.wgsl");
         embedded_asset!(app, "shaders/foliage.wgsl");
@@ -56,7 +58,9 @@ impl Plugin for SwayDrawPlugin {
             .init_resource::<LevelOfDetail>()
             .init_resource::<Sight>()
             .insert_resource(CardRange { from_m: None })
+            .init_resource::<TreeLighting>()
             .register_type::<LevelOfDetail>()
+            .register_type::<TreeLighting>()
             .init_resource::<Tailoring>()
             .init_resource::<Wardrobe>()
             .add_message::<SpeciesDressed>()
@@ -76,7 +80,7 @@ impl Plugin for SwayDrawPlugin {
         let dress =
             dress.chain().after(receive_models).in_set(WindwoodSystems::Grow).run_if(resource_exists::<DrawPath>);
         let upload = timed!(app, upload_winds, place_trees, wake_trees, upload_frame);
-        app.add_systems(Update, dress).add_systems(
+        app.add_systems(Update, (dress, relight.run_if(resource_changed::<TreeLighting>))).add_systems(
             PostUpdate,
             upload.chain().after(VisibilitySystems::VisibilityPropagate).in_set(WindwoodSystems::Upload),
         );

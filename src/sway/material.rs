@@ -1,6 +1,6 @@
 //! The material that poses trees in the vertex shader.
 
-use super::active::FLUTTER_PERIOD_S;
+use super::{active::FLUTTER_PERIOD_S, lighting::TreeLighting};
 use crate::{
     dynamics::leaf::LeafResponse,
     shading::{define, lay_out},
@@ -32,6 +32,7 @@ pub type SwayMaterial = ExtendedMaterial<StandardMaterial, SwayExtension>;
 /// The tables that the vertex shader reads. They are shared and written in place, so that the material itself never
 /// changes: a changed material would re-extract every tree that wears it.
 #[derive(Asset, AsBindGroup, Reflect, Clone, Debug)]
+#[bind_group_data(TreeLighting)]
 pub struct SwayExtension {
     /// The poses of all beams of all trees.
     #[storage(100, read_only)]
@@ -51,6 +52,14 @@ pub struct SwayExtension {
     /// What they do over the year.
     #[uniform(107)]
     pub season: SeasonUniform,
+    /// By what it is lit.
+    pub lighting: TreeLighting,
+}
+
+impl From<&SwayExtension> for TreeLighting {
+    fn from(extension: &SwayExtension) -> Self {
+        extension.lighting
+    }
 }
 
 /// `LeafResponse` of the shader.
@@ -152,7 +161,7 @@ impl MaterialExtension for SwayExtension {
         _: &MaterialExtensionPipeline,
         descriptor: &mut RenderPipelineDescriptor,
         layout: &MeshVertexBufferLayoutRef,
-        _: MaterialExtensionKey<Self>,
+        key: MaterialExtensionKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
         let leaves = layout.0.contains(ATTRIBUTE_LEAF_AXIS);
         let mut attributes = vec![
@@ -178,6 +187,7 @@ impl MaterialExtension for SwayExtension {
             _ => &[],
         };
         define(descriptor, own);
+        define(descriptor, key.bind_group_data.names());
         lay_out(descriptor, layout, &attributes, &["VERTEX_COLORS", "VERTEX_TANGENTS", "VISIBILITY_RANGE_DITHER"])
     }
 }

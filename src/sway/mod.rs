@@ -24,6 +24,8 @@ mod draw;
 #[cfg(feature = "render")]
 mod draw_plugin;
 #[cfg(feature = "render")]
+mod lighting;
+#[cfg(feature = "render")]
 mod looks;
 #[cfg(feature = "render")]
 mod material;
@@ -57,5 +59,6 @@ pub use {
     detail::{LevelOfDetail, LevelStyle},
     draw::{DrawPath, Foliage},
     draw_plugin::SwayDrawPlugin,
+    lighting::TreeLighting,
     upload::StandTables,
 };

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     forest::cells::ForestCells,
     lod::{LevelSettings, Scene, ViewAtlas},
-    sway::{DrawPath, StandTables},
+    sway::{DrawPath, StandTables, TreeLighting},
     tree::{Species, TreeModel, growth::age::Age, painting::paint},
 };
 use bevy::{
@@ -65,6 +65,7 @@ pub(super) fn bake_far_looks(
     mut events: MessageReader<AssetEvent<Species>>,
     tables: Res<StandTables>,
     path: Res<DrawPath>,
+    lighting: Res<TreeLighting>,
     near: Res<NearCells>,
     species: Res<Assets<Species>>,
     forests: Query<&ForestCells>,
@@ -92,7 +93,7 @@ pub(super) fn bake_far_looks(
     let FarLooks { looks, baking } = &mut *looks;
     baking.retain_mut(|(id, task)| {
         let Some(Baked { species, summer, atlas }) = block_on(poll_once(task)) else { return true };
-        let material = far_material(&species, summer, &atlas, &mut images, &tables, near.buffer.clone());
+        let material = far_material(&species, summer, &atlas, &mut images, &tables, near.buffer.clone(), *lighting);
         let frame = atlas.frame;
         let reach_m = frame.centre.length() + frame.radius_m.hypot(frame.half_height_m);
         let handle = match looks.get(id) {

@@ -3,8 +3,8 @@
 use super::mesh::ATTRIBUTE_FAR;
 use crate::{
     lod::ViewAtlas,
-    shading::{image, lay_out},
-    sway::{SeasonUniform, StandTables},
+    shading::{define, image, lay_out},
+    sway::{SeasonUniform, StandTables, TreeLighting},
     tree::Species,
 };
 use bevy::{
@@ -25,6 +25,7 @@ pub type FarMaterial = ExtendedMaterial<StandardMaterial, FarExtension>;
 
 /// The views of a species, and what all far trees share.
 #[derive(Asset, AsBindGroup, Reflect, Clone, Debug)]
+#[bind_group_data(TreeLighting)]
 pub struct FarExtension {
     #[texture(100)]
     #[sampler(102)]
@@ -41,6 +42,13 @@ pub struct FarExtension {
     /// Cells whose trees stand near.
     #[storage(108, read_only)]
     near: Handle<ShaderBuffer>,
+    lighting: TreeLighting,
+}
+
+impl From<&FarExtension> for TreeLighting {
+    fn from(extension: &FarExtension) -> Self {
+        extension.lighting
+    }
 }
 
 /// `Views` of the shader.
@@ -62,6 +70,7 @@ pub(super) fn far_material(
     images: &mut Assets<Image>,
     tables: &StandTables,
     near: Handle<ShaderBuffer>,
+    lighting: TreeLighting,
 ) -> FarMaterial {
     let mips = (atlas.colour.mips.len() - 1) as f32;
     let mut add = |texture| images.add(image(texture, ImageAddressMode::ClampToEdge, mips));
@@ -89,7 +98,15 @@ pub(super) fn far_material(
             },
             season: SeasonUniform::new(&species.phenology, summer),
             near,
+            lighting,
         },
+    }
+}
+
+/// Lights what is there by other lights.
+pub(super) fn relight(lighting: Res<TreeLighting>, mut materials: ResMut<Assets<FarMaterial>>) {
+    for (_, material) in materials.iter_mut() {
+        material.extension.lighting = *lighting;
     }
 }
 
@@ -118,11 +135,12 @@ impl MaterialExtension for FarExtension {
         _: &MaterialExtensionPipeline,
         descriptor: &mut RenderPipelineDescriptor,
         layout: &MeshVertexBufferLayoutRef,
-        _: MaterialExtensionKey<Self>,
+        key: MaterialExtensionKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
         let attributes = [Mesh::ATTRIBUTE_POSITION.at_shader_location(0), ATTRIBUTE_FAR.at_shader_location(8)];
         // Coordinates and colour carry the place on the tree and the direction to the eye to the fragments.
         let names = ["VERTEX_UVS_A", "VERTEX_UVS_B", "VERTEX_COLORS", "VISIBILITY_RANGE_DITHER"];
+        define(descriptor, key.bind_group_data.names());
         lay_out(descriptor, layout, &attributes, &names)
     }
 }

@@ -3,7 +3,8 @@
 
 #import bevy_pbr::forward_io::{FragmentOutput, VertexOutput}
 #import bevy_pbr::pbr_fragment::pbr_input_from_standard_material
-#import bevy_pbr::pbr_functions::{alpha_discard, apply_pbr_lighting, main_pass_post_lighting_processing}
+#import bevy_pbr::pbr_functions::{alpha_discard, main_pass_post_lighting_processing}
+#import bevy_windwood::light
 
 #ifdef WINDWOOD_LEAVES
 #import bevy_pbr::mesh_view_bindings::view
@@ -56,7 +57,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     pbr_input.material.base_color = vec4(season::recoloured(summer, in.uv_b.x, in.uv_b.y), 1.0);
 #endif
     var out: FragmentOutput;
-    out.color = apply_pbr_lighting(pbr_input);
+    out.color = light::lit(pbr_input);
     out.color = main_pass_post_lighting_processing(pbr_input, out.color);
     return out;
 }

@@ -2,8 +2,8 @@
 
 #import bevy_pbr::forward_io::{FragmentOutput, VertexOutput}
 #import bevy_pbr::pbr_fragment::pbr_input_from_standard_material
-#import bevy_pbr::pbr_functions::{apply_pbr_lighting, main_pass_post_lighting_processing, visibility_range_dither}
-#import bevy_windwood::{beam, far, season}
+#import bevy_pbr::pbr_functions::{main_pass_post_lighting_processing, visibility_range_dither}
+#import bevy_windwood::{beam, far, light, season}
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(103) var<storage, read> frame: beam::Frame;
 
@@ -32,7 +32,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     pbr_input.material.base_color = vec4(colour, 1.0);
     pbr_input.material.diffuse_transmission = far::views.translucency * seen.leaf;
     var out: FragmentOutput;
-    out.color = apply_pbr_lighting(pbr_input);
+    out.color = light::lit(pbr_input);
     out.color = main_pass_post_lighting_processing(pbr_input, out.color);
     return out;
 }
