@@ -7,6 +7,7 @@ mod basis;
 mod beams;
 mod figure9;
 mod figure9_chart;
+mod grid;
 mod levels;
 mod parity;
 mod points;
@@ -48,6 +49,8 @@ enum Topic {
     /// The paper's experiment: frame rate over number of trees, with and without voxel grid and levels of detail. Takes some
     /// ten minutes on software Vulkan.
     Figure9,
+    /// What a frame costs on a graphics processor: up to a hundred thousand trees in full HD.
+    Grid,
     /// Every level of detail beside the full tree, and whether the eye can tell the change. Takes some minutes.
     Levels,
 }
@@ -63,7 +66,7 @@ struct Options {
     /// `figure9`: frames along the path for each curve and number of trees.
     #[arg(long, default_value_t = 36, value_parser = clap::value_parser!(u32).range(2..=10_800))]
     frames: u32,
-    /// `figure9`: the greatest number of trees.
+    /// `figure9`, `grid`: the greatest number of trees.
     #[arg(long, default_value_t = 10_000)]
     trees: u32,
     /// Folder for charts and pictures.
@@ -87,6 +90,7 @@ fn main() -> ExitCode {
         Topic::Scale => scale::run(),
         Topic::Trees => trees::run(),
         Topic::Figure9 => figure9::run(options.frames, options.trees, &options.out.join("figure9.png")),
+        Topic::Grid => grid::run(options.trees, &options.out),
         Topic::Levels => levels::run(&options.out.join("levels.png")),
     };
     report.print();

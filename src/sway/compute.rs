@@ -10,6 +10,7 @@ use bevy::{
     prelude::*,
     render::{
         Render, RenderApp, RenderStartup, RenderSystems,
+        diagnostic::RecordDiagnostics,
         extract_resource::{ExtractResource, ExtractResourcePlugin},
         render_asset::RenderAssets,
         render_resource::{
@@ -25,6 +26,9 @@ use bevy::{
 
 /// Threads of a workgroup; `WORKGROUP` of the shader.
 const WORKGROUP: u32 = 64;
+
+/// The name of the poses among Bevy's render diagnostics.
+pub const POSES_SPAN: &str = "tree_poses";
 
 const POSE_SHADER: &str = "embedded://bevy_windwood/sway/shaders/pose.wgsl";
 
@@ -136,8 +140,11 @@ fn pose_trees(
     if job.trees == 0 {
         return;
     }
+    let recorder = context.diagnostic_recorder();
+    let recorder = recorder.as_deref();
     let descriptor = ComputePassDescriptor { label: Some("tree poses"), timestamp_writes: None };
     let mut pass = context.command_encoder().begin_compute_pass(&descriptor);
+    let span = recorder.pass_span(&mut pass, POSES_SPAN);
     pass.set_bind_group(0, &bindings.0, &[]);
     // One thread more than there are beams looks up the wind at the tree.
     let groups = (job.most_beams + 1).div_ceil(WORKGROUP);
@@ -145,4 +152,5 @@ fn pose_trees(
         pass.set_pipeline(pipeline);
         pass.dispatch_workgroups(groups, job.trees, if job.both { 2 } else { 1 });
     }
+    span.end(&mut pass);
 }

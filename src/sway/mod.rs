@@ -48,17 +48,18 @@ pub use plugin::SwayPlugin;
 pub use response::{SwaySettings, WindResponse};
 
 #[cfg(feature = "render")]
-pub(crate) use {
-    detail::CardRange,
-    draw::{CardBehind, TreesByLevel},
-    material::SeasonUniform,
-    rouse::CulledOnGpu,
-};
-#[cfg(feature = "render")]
 pub use {
+    compute::POSES_SPAN,
     detail::{LevelOfDetail, LevelStyle},
     draw::{DrawPath, Foliage},
     draw_plugin::SwayDrawPlugin,
     lighting::TreeLighting,
     upload::StandTables,
+};
+#[cfg(feature = "render")]
+pub(crate) use {
+    detail::CardRange,
+    draw::{CardBehind, TreesByLevel},
+    material::SeasonUniform,
+    rouse::CulledOnGpu,
 };

@@ -1,0 +1,135 @@
+//! What a frame costs on this graphics processor: trees on as much ground as an 8 m grid gives them, seen from 30 m, in
+//! full HD, in the wind, under one sun that throws shadows.
+
+use crate::{capture, report::Report};
+use bevy::{
+    diagnostic::{DiagnosticPath, DiagnosticsStore},
+    prelude::*,
+    render::{
+        diagnostic::RenderDiagnosticsPlugin,
+        render_resource::PollType,
+        renderer::{RenderAdapterInfo, RenderDevice},
+    },
+    time::TimeUpdateStrategy,
+};
+use bevy_windwood::{
+    SystemTimes,
+    prelude::*,
+    scatter::{
+        ForestPlan,
+        plan::{Area, Shape, Stock},
+    },
+    sway::POSES_SPAN,
+};
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+
+const SIZE: (u32, u32) = (1920, 1080);
+/// Numbers of trees, and the keys of what is found: a frame, its part that is poses, and our systems.
+const WOODS: [(u32, [&str; 3]); 4] = [
+    (1_000, ["frame_ms_1k", "poses_gpu_ms_1k", "systems_ms_1k"]),
+    (5_000, ["frame_ms_5k", "poses_gpu_ms_5k", "systems_ms_5k"]),
+    (20_000, ["frame_ms_20k", "poses_gpu_ms_20k", "systems_ms_20k"]),
+    (100_000, ["frame_ms_100k", "poses_gpu_ms_100k", "systems_ms_100k"]),
+];
+/// Ground that a tree has to itself, m^2.
+const AREA_PER_TREE_M2: f32 = 64.0;
+/// Height of the camera over the edge of the wood, m.
+const EYES_M: f32 = 30.0;
+/// Frames before any is measured, and frames that are.
+const FRAMES: [usize; 2] = [40, 200];
+/// After so long something is amiss.
+const PATIENCE_S: f64 = 120.0;
+
+/// Measures woods of up to that many trees, and takes a picture of each.
+pub fn run(most_trees: u32, folder: &Path) -> Report {
+    let mut report = Report::default();
+    println!("{:>8} {:>10} {:>12} {:>12}   at {}x{}", "trees", "frame ms", "poses ms", "systems ms", SIZE.0, SIZE.1);
+    for (trees, [frame_key, poses_key, systems_key]) in WOODS.into_iter().filter(|(trees, _)| *trees <= most_trees) {
+        match measure(trees, &folder.join(format!("grid_{trees}.png"))) {
+            Ok([frame_ms, poses_ms, systems_ms]) => {
+                println!("{trees:>8} {frame_ms:>10.3} {poses_ms:>12.3} {systems_ms:>12.3}");
+                report.tell(frame_key, frame_ms, "a frame, of many that are drawn without a pause");
+                report.tell(poses_key, poses_ms, "its part on the graphics processor that poses beams in the wind");
+                report.tell(systems_key, systems_ms, "its part on the processor that is ours");
+            }
+            Err(error) => eprintln!("{trees} trees: {error}"),
+        }
+    }
+    report
+}
+
+/// Milliseconds of a frame, of the poses, and of our systems.
+fn measure(trees: u32, picture: &Path) -> Result<[f64; 3], String> {
+    let mut app = App::new();
+    app.add_plugins((capture::engine("grid", SIZE, true), WindwoodPlugins, RenderDiagnosticsPlugin));
+    capture::begin(&mut app)?;
+    if trees == WOODS[0].0 {
+        let adapter = app.world().get_resource::<RenderAdapterInfo>();
+        println!("on {}", adapter.map_or("an unknown device", |info| info.name.as_str()));
+    }
+    let camera = plant(&mut app, trees)?;
+    let canvas = capture::canvas(&mut app, SIZE);
+    app.world_mut().entity_mut(camera).insert(capture::camera(&canvas));
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / 60.0)));
+    let [before, frames] = FRAMES;
+    (0..before).for_each(|_| capture::step(&mut app));
+
+    let mut systems = Duration::ZERO;
+    let begun = Instant::now();
+    for _ in 0..frames {
+        app.update();
+        systems += app.world().resource::<SystemTimes>().total();
+    }
+    let poll = PollType::Wait { submission_index: None, timeout: None };
+    let device = app.world().resource::<RenderDevice>().wgpu_device();
+    device.poll(poll).map_err(|error| error.to_string())?;
+    let frame_ms = begun.elapsed().as_secs_f64() * 1e3 / frames as f64;
+    let systems_ms = systems.as_secs_f64() * 1e3 / frames as f64;
+
+    let path = DiagnosticPath::new(format!("render/{POSES_SPAN}/elapsed_gpu"));
+    let poses_ms = app.world().resource::<DiagnosticsStore>().get(&path).and_then(|diagnostic| diagnostic.average());
+    capture::save(&capture::capture(&mut app, &canvas, SIZE)?, picture)?;
+    Ok([frame_ms, poses_ms.unwrap_or(f64::NAN), systems_ms])
+}
+
+/// Plants the wood and waits until all of it that is wanted stands.
+fn plant(app: &mut App, trees: u32) -> Result<Entity, String> {
+    let half_m = 0.5 * (trees as f32 * AREA_PER_TREE_M2).sqrt();
+    let area = Area {
+        shape: Shape::Rectangle { min_m: [-half_m; 2], max_m: [half_m; 2] },
+        density_per_ha: 1e4 / AREA_PER_TREE_M2,
+        stock: vec![Stock { species: "oak".into(), age_years: 90.0, age_spread_years: 20.0, ..default() }],
+        ..default()
+    };
+    let world = app.world_mut();
+    let plan = world.resource_mut::<Assets<ForestPlan>>().add(ForestPlan { seed: 8, areas: vec![area], ..default() });
+    let far_to_m = (4.0 * half_m).max(ForestSettings::default().far_to_m);
+    let settings = ForestSettings { far_to_m, cells_at_once: 64, trees_per_frame: 100_000, ..default() };
+    world.spawn((Forest::new(plan), settings));
+    let ground = world.resource_mut::<Assets<Mesh>>().add(Plane3d::default().mesh().size(20_000.0, 20_000.0));
+    let green = StandardMaterial { base_color: Color::srgb(0.36, 0.42, 0.2), perceptual_roughness: 1.0, ..default() };
+    let green = world.resource_mut::<Assets<StandardMaterial>>().add(green);
+    world.spawn((Mesh3d(ground), MeshMaterial3d(green)));
+    world.spawn((
+        DirectionalLight { illuminance: 12_000.0, shadow_maps_enabled: true, ..default() },
+        Transform::default().looking_to(Vec3::new(-0.5, -0.7, -0.4), Vec3::Y),
+    ));
+    world.insert_resource(Wind { speed: 8.0, ..default() });
+    world.insert_resource(GlobalAmbientLight { brightness: 700.0, ..default() });
+    world.insert_resource(ClearColor(Color::srgb(0.62, 0.75, 0.9)));
+    let place =
+        Transform::from_xyz(0.0, EYES_M, half_m + 10.0).looking_at(Vec3::new(0.0, 0.0, half_m - 150.0), Vec3::Y);
+    let watcher = world.spawn((Viewpoint, place)).id();
+    let begun = Instant::now();
+    while !(app.world().resource::<ActiveSway>().is_ready() && capture::forests_are_drawn(app.world_mut())) {
+        app.update();
+        std::thread::sleep(Duration::from_millis(1));
+        if begun.elapsed().as_secs_f64() > PATIENCE_S {
+            return Err(format!("the wood did not stand after {PATIENCE_S} s"));
+        }
+    }
+    Ok(watcher)
+}
