@@ -27,42 +27,58 @@ use std::{
 };
 
 const SIZE: (u32, u32) = (1920, 1080);
-/// Numbers of trees, and the keys of what is found: a frame, its part that is poses, and our systems.
-const WOODS: [(u32, [&str; 3]); 4] = [
-    (1_000, ["frame_ms_1k", "poses_gpu_ms_1k", "systems_ms_1k"]),
-    (5_000, ["frame_ms_5k", "poses_gpu_ms_5k", "systems_ms_5k"]),
-    (20_000, ["frame_ms_20k", "poses_gpu_ms_20k", "systems_ms_20k"]),
-    (100_000, ["frame_ms_100k", "poses_gpu_ms_100k", "systems_ms_100k"]),
+/// Numbers of trees, and the keys of what is found: a frame, one under the sun alone, one
+/// without shadows, its part that is poses, and our systems.
+const WOODS: [(u32, [&str; 5]); 4] = [
+    (1_000, ["frame_ms_1k", "sun_only_ms_1k", "unshadowed_ms_1k", "poses_gpu_ms_1k", "systems_ms_1k"]),
+    (5_000, ["frame_ms_5k", "sun_only_ms_5k", "unshadowed_ms_5k", "poses_gpu_ms_5k", "systems_ms_5k"]),
+    (20_000, ["frame_ms_20k", "sun_only_ms_20k", "unshadowed_ms_20k", "poses_gpu_ms_20k", "systems_ms_20k"]),
+    (100_000, ["frame_ms_100k", "sun_only_ms_100k", "unshadowed_ms_100k", "poses_gpu_ms_100k", "systems_ms_100k"]),
 ];
 /// Ground that a tree has to itself, m^2.
 const AREA_PER_TREE_M2: f32 = 64.0;
 /// Height of the camera over the edge of the wood, m.
 const EYES_M: f32 = 30.0;
-/// Frames before any is measured, and frames that are.
-const FRAMES: [usize; 2] = [40, 200];
+/// Frames before any is measured.
+const FRAMES_BEFORE: u32 = 20;
 /// After so long something is amiss.
 const PATIENCE_S: f64 = 120.0;
 
-/// Measures woods of up to that many trees, and takes a picture of each.
-pub fn run(most_trees: u32, folder: &Path) -> Report {
+/// Measures frames of woods of up to that many trees, and takes a picture of each.
+pub fn run(frames: u32, most_trees: u32, folder: &Path) -> Report {
     let mut report = Report::default();
-    println!("{:>8} {:>10} {:>12} {:>12}   at {}x{}", "trees", "frame ms", "poses ms", "systems ms", SIZE.0, SIZE.1);
-    for (trees, [frame_key, poses_key, systems_key]) in WOODS.into_iter().filter(|(trees, _)| *trees <= most_trees) {
-        match measure(trees, &folder.join(format!("grid_{trees}.png"))) {
-            Ok([frame_ms, poses_ms, systems_ms]) => {
-                println!("{trees:>8} {frame_ms:>10.3} {poses_ms:>12.3} {systems_ms:>12.3}");
-                report.tell(frame_key, frame_ms, "a frame, of many that are drawn without a pause");
-                report.tell(poses_key, poses_ms, "its part on the graphics processor that poses beams in the wind");
-                report.tell(systems_key, systems_ms, "its part on the processor that is ours");
+    println!(
+        "{:>8} {:>10} {:>11} {:>13} {:>10} {:>11}   at {}x{}",
+        "trees", "frame ms", "sun only ms", "unshadowed ms", "poses ms", "systems ms", SIZE.0, SIZE.1
+    );
+    for (trees, keys) in WOODS.into_iter().filter(|(trees, _)| *trees <= most_trees) {
+        let found = match measure(trees, frames, &folder.join(format!("grid_{trees}.png"))) {
+            Ok(found) => found,
+            Err(error) => {
+                eprintln!("{trees} trees: {error}");
+                continue;
             }
-            Err(error) => eprintln!("{trees} trees: {error}"),
+        };
+        let [frame_ms, sun_only_ms, unshadowed_ms, poses_ms, systems_ms] = found;
+        println!(
+            "{trees:>8} {frame_ms:>10.3} {sun_only_ms:>11.3} {unshadowed_ms:>13.3} {poses_ms:>10.3} {systems_ms:>11.3}"
+        );
+        let notes = [
+            "a frame, of many that are drawn without a pause",
+            "the same under `TreeLighting::SunOnly`",
+            "the same where the sun throws no shadows",
+            "its part on the graphics processor that poses beams in the wind",
+            "its part on the processor that is ours",
+        ];
+        for ((key, value), note) in keys.into_iter().zip(found).zip(notes) {
+            report.tell(key, value, note);
         }
     }
     report
 }
 
-/// Milliseconds of a frame, of the poses, and of our systems.
-fn measure(trees: u32, picture: &Path) -> Result<[f64; 3], String> {
+/// Milliseconds of a frame, of one under the sun alone, of one without shadows, of the poses, and of our systems.
+fn measure(trees: u32, frames: u32, picture: &Path) -> Result<[f64; 5], String> {
     let mut app = App::new();
     app.add_plugins((capture::engine("grid", SIZE, true), WindwoodPlugins, RenderDiagnosticsPlugin));
     capture::begin(&mut app)?;
@@ -74,9 +90,22 @@ fn measure(trees: u32, picture: &Path) -> Result<[f64; 3], String> {
     let canvas = capture::canvas(&mut app, SIZE);
     app.world_mut().entity_mut(camera).insert(capture::camera(&canvas));
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / 60.0)));
-    let [before, frames] = FRAMES;
-    (0..before).for_each(|_| capture::step(&mut app));
+    let [frame_ms, systems_ms] = draw(&mut app, frames)?;
+    let path = DiagnosticPath::new(format!("render/{POSES_SPAN}/elapsed_gpu"));
+    let poses_ms = app.world().resource::<DiagnosticsStore>().get(&path).and_then(|diagnostic| diagnostic.average());
+    capture::save(&capture::capture(&mut app, &canvas, SIZE)?, picture)?;
+    app.insert_resource(TreeLighting::SunOnly);
+    let [sun_only_ms, _] = draw(&mut app, frames)?;
+    app.insert_resource(TreeLighting::AllLights);
+    let world = app.world_mut();
+    world.query::<&mut DirectionalLight>().iter_mut(world).for_each(|mut sun| sun.shadow_maps_enabled = false);
+    let [unshadowed_ms, _] = draw(&mut app, frames)?;
+    Ok([frame_ms, sun_only_ms, unshadowed_ms, poses_ms.unwrap_or(f64::NAN), systems_ms])
+}
 
+/// Milliseconds of a frame and of our systems in it, when many are drawn without a pause.
+fn draw(app: &mut App, frames: u32) -> Result<[f64; 2], String> {
+    (0..FRAMES_BEFORE.min(frames)).for_each(|_| capture::step(app));
     let mut systems = Duration::ZERO;
     let begun = Instant::now();
     for _ in 0..frames {
@@ -86,13 +115,7 @@ fn measure(trees: u32, picture: &Path) -> Result<[f64; 3], String> {
     let poll = PollType::Wait { submission_index: None, timeout: None };
     let device = app.world().resource::<RenderDevice>().wgpu_device();
     device.poll(poll).map_err(|error| error.to_string())?;
-    let frame_ms = begun.elapsed().as_secs_f64() * 1e3 / frames as f64;
-    let systems_ms = systems.as_secs_f64() * 1e3 / frames as f64;
-
-    let path = DiagnosticPath::new(format!("render/{POSES_SPAN}/elapsed_gpu"));
-    let poses_ms = app.world().resource::<DiagnosticsStore>().get(&path).and_then(|diagnostic| diagnostic.average());
-    capture::save(&capture::capture(&mut app, &canvas, SIZE)?, picture)?;
-    Ok([frame_ms, poses_ms.unwrap_or(f64::NAN), systems_ms])
+    Ok([begun.elapsed(), systems].map(|all| all.as_secs_f64() * 1e3 / f64::from(frames)))
 }
 
 /// Plants the wood and waits until all of it that is wanted stands.

@@ -42,9 +42,9 @@ pub struct LevelDistances {
 }
 
 impl Default for LevelDistances {
-    /// Full trees from two fifths of a picture of 1080 pixels on; of 25 m in a view of 45° that is at 80 m, 540 m and 11 km.
+    /// Full trees from two thirds of a picture of 1080 pixels on; of 25 m in a view of 45° that is at 47 m, 330 m and 11 km.
     fn default() -> Self {
-        Self { high_px: 400.0, medium_px: 60.0, low_px: 3.0, quality: 1.0, margin: 0.08 }
+        Self { high_px: 700.0, medium_px: 100.0, low_px: 3.0, quality: 1.0, margin: 0.08 }
     }
 }
 
@@ -122,8 +122,8 @@ mod tests {
         let distances = LevelDistances::default();
         distances.validate().unwrap();
         assert_eq!(ron::from_str::<LevelDistances>(&ron::to_string(&distances).unwrap()).unwrap(), distances);
-        let error = LevelDistances { medium_px: 500.0, ..distances }.validate().unwrap_err();
-        assert_eq!(error.to_string(), "`high_px` is 400, but must be 500 to 100000");
+        let error = LevelDistances { medium_px: 800.0, ..distances }.validate().unwrap_err();
+        assert_eq!(error.to_string(), "`high_px` is 700, but must be 800 to 100000");
         assert!(LevelDistances { margin: f32::NAN, ..distances }.validate().is_err());
     }
 
@@ -131,7 +131,7 @@ mod tests {
     fn a_tree_has_its_size_on_screen_where_its_level_changes() {
         let [high_m, medium_m, low_m] = switches().at_m();
         let pixels = |distance_m: f32| 25.0 / (2.0 * distance_m * (0.5 * LENS.fov_rad).tan()) * LENS.picture_px;
-        for (at_m, px) in [(high_m, 400.0), (medium_m, 60.0), (low_m, 3.0)] {
+        for (at_m, px) in [(high_m, 700.0), (medium_m, 100.0), (low_m, 3.0)] {
             assert!((pixels(at_m) / px - 1.0).abs() < 1e-4);
         }
         let twice = LevelDistances { quality: 2.0, ..Default::default() }.switches(25.0, LENS);

@@ -18,7 +18,7 @@ use bevy::{
             ComputePassDescriptor, ComputePipelineDescriptor, PipelineCache, ShaderStages,
             binding_types::{storage_buffer_read_only_sized, storage_buffer_sized},
         },
-        renderer::{RenderContext, RenderDevice, RenderGraph},
+        renderer::{RenderContext, RenderDevice, RenderGraph, RenderGraphSystems},
         storage::{GpuShaderBuffer, ShaderBuffer},
     },
     shader::ShaderDefVal,
@@ -51,7 +51,7 @@ pub(super) fn plugin(app: &mut App) {
     render_app
         .add_systems(RenderStartup, queue_pipelines.run_if(can_pose))
         .add_systems(Render, bind_tables.in_set(RenderSystems::PrepareBindGroups))
-        .add_systems(RenderGraph, pose_trees.before(camera_driver));
+        .add_systems(RenderGraph, pose_trees.in_set(RenderGraphSystems::Render).before(camera_driver));
 }
 
 /// Storage buffers that a stage needs: six to pose; to draw, our four and Bevy's own for meshes, instances and skins.
