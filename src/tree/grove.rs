@@ -236,4 +236,31 @@ mod tests {
             assert!((Age::YOUNGEST_YEARS..=age.oldest_years).contains(&drawn), "{years} is drawn as {drawn}");
         }
     }
+
+    #[cfg(feature = "render")]
+    #[test]
+    fn a_tree_of_a_seed_is_the_variant_that_is_foretold() {
+        let mut app = App::new();
+        app.add_plugins((bevy::asset::AssetPlugin::default(), bevy::app::TaskPoolPlugin::default()));
+        app.init_asset::<Species>().init_asset::<TreeModel>().init_resource::<Grove>().add_message::<SpeciesBaked>();
+        app.add_systems(Update, (adopt_species, receive_models, grow_trees).chain());
+        let young = Species { variants: 3, ..Species::default() };
+        let species = app.world_mut().resource_mut::<Assets<Species>>().add(young);
+        for seed in 0..20 {
+            let tree = Tree::new(species.clone()).with_seed(seed).with_age(Age::YOUNGEST_YEARS);
+            app.world_mut().spawn((tree, Transform::from_xyz(seed as f32, 0.0, 0.0)));
+        }
+        let mut grown = Vec::new();
+        for _ in 0..10_000 {
+            app.update();
+            let mut trees = app.world_mut().query::<(&Tree, &Grown)>();
+            grown = trees.iter(app.world()).filter_map(|(tree, grown)| Some((tree.seed?, grown.variant))).collect();
+            if grown.len() == 20 {
+                break;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        assert_eq!(grown.len(), 20);
+        assert!(grown.iter().all(|&(seed, variant)| Tree::variant_of(seed, 3) as usize == variant), "{grown:?}");
+    }
 }
