@@ -49,7 +49,7 @@ fn parts(criterion: &mut Criterion) {
         bencher.iter(|| CylinderLevel::bake(black_box(&scene), &species, &model, &settings.cylinder));
     });
     group.bench_function("views", |bencher| {
-        bencher.iter(|| ViewAtlas::bake(black_box(&scene), &settings.views));
+        bencher.iter(|| ViewAtlas::bake(black_box(std::slice::from_ref(&scene)), &settings.views));
     });
     group.bench_function("reduced", |bencher| {
         bencher.iter(|| simplify::reduce(black_box(&model), &settings.reductions[0]));

@@ -28,7 +28,10 @@ fn the_cells_that_stand_near_are_a_square_of_one_size_in_both_languages() {
     };
     let shader = include_str!("../src/forest/far/shaders/far_card.wgsl");
     assert_eq!(number(include_str!("../src/forest/far/near.rs"), "SIDE"), number(shader, "NEAR_SIDE"));
-    assert_eq!(number(include_str!("../src/forest/far/mesh.rs"), "GREATEST_SIZE"), number(shader, "GREATEST_SIZE"));
+    let mesh = include_str!("../src/forest/far/mesh.rs");
+    assert_eq!(number(mesh, "GREATEST_SIZE"), number(shader, "GREATEST_SIZE"));
+    let leans = format!("leans: array<vec4<f32>, {}>", number(mesh, "MOST_TREES"));
+    assert!(include_str!("../src/forest/far/shaders/far.wgsl").contains(&leans), "{leans}");
 }
 
 #[test]

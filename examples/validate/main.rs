@@ -69,6 +69,9 @@ struct Options {
     /// `figure9`, `grid`: the greatest number of trees.
     #[arg(long, default_value_t = 10_000)]
     trees: u32,
+    /// `levels`: this species alone.
+    #[arg(long)]
+    species: Option<String>,
     /// Folder for charts and pictures.
     #[arg(long, default_value = "out")]
     out: PathBuf,
@@ -91,7 +94,7 @@ fn main() -> ExitCode {
         Topic::Trees => trees::run(),
         Topic::Figure9 => figure9::run(options.frames, options.trees, &options.out.join("figure9.png")),
         Topic::Grid => grid::run(options.frames, options.trees, &options.out),
-        Topic::Levels => levels::run(&options.out.join("levels.png")),
+        Topic::Levels => levels::run(&options.out.join("levels.png"), options.species.as_deref()),
     };
     report.print();
     if let Some(path) = options.json {

@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// Mean speed at 10 m, m/s: the middle of a fresh breeze (Beaufort 5, 8.0 to 10.7 m/s).
-const FRESH_BREEZE_M_S: f32 = 9.4;
+pub(super) const FRESH_BREEZE_M_S: f32 = 9.4;
 /// The intensity for which the basis of the loads was found ([`load_basis`](crate::dynamics::load_basis)).
 const TURBULENCE_INTENSITY: f32 = 0.2;
 /// Amplitude of the load `|u| u`, m^2/s^2.

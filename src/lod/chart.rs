@@ -1,17 +1,9 @@
-//! Directions on squares: where a view lies in its atlas, and how a normal is kept in two channels.
+//! Directions on a square: where a view lies in its atlas.
 //!
-//! Both charts unfold an octahedron (Meyer et al., "On floating-point normal vectors", 2010). With
-//! `d / (|x| + |y| + |z|) = (x, y, z)`:
-//!
-//! ```text
-//! views, of the upper hemisphere     (x + z, x - z)                                          the horizon is the rim
-//! normals, of the sphere             (x, z)                                     for y >= 0
-//!                                    ((1 - |z|) sign x, (1 - |x|) sign z)       below
-//! ```
-//!
-//! both brought from -1..1 to 0..1.
+//! The chart unfolds half an octahedron (Meyer et al., "On floating-point normal vectors", 2010). With
+//! `d / (|x| + |y| + |z|) = (x, y, z)`, the place is `(x + z, x - z)`, brought from -1..1 to 0..1: the horizon is the rim.
 
-use bevy::math::{UVec2, Vec2, Vec2Swizzles, Vec3};
+use bevy::math::{UVec2, Vec2, Vec3};
 
 /// A view of the atlas, and how much it weighs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,24 +48,6 @@ pub fn views_towards(to_eye: Vec3, across: u32) -> [ViewWeight; 3] {
     ]
 }
 
-/// The place on the square, 0 to 1 each way, of a unit normal.
-#[must_use]
-pub fn place_of_normal(normal: Vec3) -> Vec2 {
-    let n = normal / (normal.x.abs() + normal.y.abs() + normal.z.abs()).max(1e-12);
-    let flat = Vec2::new(n.x, n.z);
-    let place = if n.y < 0.0 { (1.0 - flat.yx().abs()) * Vec2::ONE.copysign(flat) } else { flat };
-    0.5 + 0.5 * place
-}
-
-/// The unit normal that a place on the square, 0 to 1 each way, stands for.
-#[must_use]
-pub fn normal_of(place: Vec2) -> Vec3 {
-    let p = 2.0 * place - 1.0;
-    let y = 1.0 - p.x.abs() - p.y.abs();
-    let flat = if y < 0.0 { (1.0 - p.yx().abs()) * Vec2::ONE.copysign(p) } else { p };
-    Vec3::new(flat.x, y, flat.y).normalize_or(Vec3::Y)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -86,10 +60,8 @@ mod tests {
 
     proptest! {
         #[test]
-        fn charts_lead_there_and_back(azimuth in -3.2_f32..3.2, climb in -1.0_f32..1.0) {
-            let normal = direction(azimuth, climb);
-            prop_assert!(normal_of(place_of_normal(normal)).distance(normal) < 1e-5);
-            let up = direction(azimuth, climb.abs());
+        fn the_chart_leads_there_and_back(azimuth in -3.2_f32..3.2, climb in 0.0_f32..1.0) {
+            let up = direction(azimuth, climb);
             prop_assert!(view_direction(view_place(up)).distance(up) < 1e-5);
         }
 
@@ -137,7 +109,6 @@ mod tests {
     fn directions_without_length_and_straight_down_are_harmless() {
         for to_eye in [Vec3::ZERO, Vec3::NEG_Y, Vec3::Y] {
             assert!(views_towards(to_eye, 8).iter().all(|view| view.weight.is_finite()));
-            assert!(place_of_normal(to_eye).is_finite());
         }
     }
 }

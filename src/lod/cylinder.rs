@@ -20,7 +20,7 @@ use std::f32::consts::PI;
 
 use super::{
     breeze,
-    film::Film,
+    film::{Alpha, Film},
     profile::{CrownProfile, crown_points},
     scene::Scene,
     settings::CylinderSettings,
@@ -55,9 +55,8 @@ pub struct CylinderLevel {
     /// [a mask](crate::texture::MASK_CUT_OFF) keeps that share in every mip of every image. As high as all images are; no
     /// texel of any mip knows of another image, so only a filter can mix them ([`place_in`](Self::place_in)).
     pub colour: TextureData,
-    /// Linear, in the same places: in red and green the [place](super::place_of_normal) of the tree-local normal, in blue
-    /// the distance from the axis as a share of the greatest at rest, in alpha the share of the species' translucency (0
-    /// for wood).
+    /// Linear, in the same places: in red, green and blue half the mean tree-local normal and a half, in alpha the
+    /// share of the species' translucency (0 for wood).
     pub surface: TextureData,
     /// Share of rays that hit something, of all images.
     pub cover: f32,
@@ -90,7 +89,11 @@ impl CylinderLevel {
         let stem = Stem::of(&model.skeleton);
         let film = sequence(scene, model, &profile, settings);
         let (cover, mean_colour) = (film.cover(), film.colour());
-        let developed = film.developed(settings.width_texels as usize, settings.height_texels as usize, LEAST_TEXELS);
+        let developed = film.developed(
+            [settings.width_texels, settings.height_texels].map(|texels| texels as usize),
+            LEAST_TEXELS,
+            Alpha::Mask,
+        );
         Some(Self {
             envelope: envelope(&profile, &stem, settings),
             trunk: stem.cone(species.wood.bark.tile_m),

@@ -5,7 +5,6 @@
 
 use bevy::math::Vec3;
 
-use super::chart::place_of_normal;
 use crate::texture::{HALF_A_STEP, MASK_CUT_OFF, TextureData, colour_bytes, linear_bytes};
 
 /// How much a texel's coverage is mixed with that of the next coarser mip. The few rays of a texel make few steps of
@@ -18,7 +17,17 @@ pub(super) struct Sample {
     pub colour: [f32; 3],
     pub normal: Vec3,
     pub translucency: f32,
+    /// How far along its way, 0 to 1. No texture keeps it; tests know by it that rays saw the same thing.
     pub depth: f32,
+}
+
+/// What the alpha of a texel is to say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Alpha {
+    /// Whether it passes a mask: bent so that as many texels of a tile pass the cut-off, in every mip, as rays hit the tree.
+    Mask,
+    /// What share of its rays hit something.
+    Share,
 }
 
 /// Means over the rays of a texel, those that saw nothing counting as nought.
@@ -26,7 +35,6 @@ pub(super) struct Sample {
 pub(super) struct Texel {
     colour: Vec3,
     normal: Vec3,
-    depth: f32,
     translucency: f32,
     /// Share of rays that hit something.
     pub cover: f32,
@@ -37,7 +45,6 @@ impl Texel {
     pub(super) fn add(&mut self, sample: &Sample, share: f32) {
         self.colour += Vec3::from_array(sample.colour) * share;
         self.normal += sample.normal * share;
-        self.depth += sample.depth * share;
         self.translucency += sample.translucency * share;
         self.cover += share;
     }
@@ -48,7 +55,6 @@ impl Texel {
         Self {
             colour: mean_vector(|texel| texel.colour),
             normal: mean_vector(|texel| texel.normal),
-            depth: mean(|texel| texel.depth),
             translucency: mean(|texel| texel.translucency),
             cover: mean(|texel| texel.cover),
         }
@@ -59,13 +65,13 @@ impl Texel {
 #[derive(Clone, Copy)]
 struct Shown {
     colour: Vec3,
+    /// Mean of unit normals: the shorter, the more they differ.
     normal: Vec3,
-    depth: f32,
     translucency: f32,
 }
 
 /// Of a texel of whose surroundings nothing is known.
-const UNSEEN: Shown = Shown { colour: Vec3::ZERO, normal: Vec3::Y, depth: 0.5, translucency: 0.0 };
+const UNSEEN: Shown = Shown { colour: Vec3::ZERO, normal: Vec3::ZERO, translucency: 0.0 };
 
 impl Texel {
     fn shown(&self, around: Shown) -> Shown {
@@ -74,8 +80,7 @@ impl Texel {
         }
         Shown {
             colour: self.colour / self.cover,
-            normal: self.normal.try_normalize().unwrap_or(around.normal),
-            depth: self.depth / self.cover,
+            normal: self.normal / self.cover,
             translucency: self.translucency / self.cover,
         }
     }
@@ -93,7 +98,7 @@ pub(super) struct Film {
 pub(super) struct Developed {
     /// sRGB colour and coverage.
     pub colour: TextureData,
-    /// Linear: place of the normal in red and green, depth in blue, translucency in alpha.
+    /// Linear: half the mean normal and a half in red, green and blue, translucency in alpha.
     pub surface: TextureData,
 }
 
@@ -146,9 +151,8 @@ impl Film {
     }
 
     /// Makes textures of a film of tiles of `tile_width` x `tile_height` texels, powers of two, with mips until a tile's
-    /// shorter side is `least` texels. Nothing mixes tiles: each is as if it had been developed alone. Of each tile in each mip as many texels pass the mask's cut-off
-    /// as rays hit the tree.
-    pub(super) fn developed(self, tile_width: usize, tile_height: usize, least: usize) -> Developed {
+    /// shorter side is `least` texels. Nothing mixes tiles: each is as if it had been developed alone.
+    pub(super) fn developed(self, [tile_width, tile_height]: [usize; 2], least: usize, alpha: Alpha) -> Developed {
         let (width, height) = (self.width as u32, self.height as u32);
         let shorter = tile_width.min(tile_height);
         let mut pyramid = vec![self];
@@ -165,7 +169,10 @@ impl Film {
             let film = &pyramid[mip];
             let shown = film.shown(around.as_ref());
             if mip < mips {
-                let alphas = film.alphas(pyramid.get(mip + 1), [tile_width >> mip, tile_height >> mip]);
+                let alphas = match alpha {
+                    Alpha::Mask => film.mask(pyramid.get(mip + 1), [tile_width >> mip, tile_height >> mip]),
+                    Alpha::Share => film.texels.iter().map(|texel| texel.cover).collect(),
+                };
                 colours[mip] = shown.iter().zip(&alphas).flat_map(|(texel, &alpha)| texel.colour(alpha)).collect();
                 surfaces[mip] = shown.iter().flat_map(Shown::surface).collect();
             }
@@ -184,8 +191,8 @@ impl Film {
         self.texels.iter().enumerate().map(|(index, texel)| texel.shown(lent(index))).collect()
     }
 
-    /// Alpha of all texels.
-    fn alphas(&self, coarser: Option<&Self>, tile: [usize; 2]) -> Vec<f32> {
+    /// Alpha of all texels, for a mask.
+    fn mask(&self, coarser: Option<&Self>, tile: [usize; 2]) -> Vec<f32> {
         let soft = |(index, texel): (usize, &Texel)| {
             let around = coarser.map_or(texel.cover, |coarser| {
                 coarser.texels[index / self.width / 2 * coarser.width + index % self.width / 2].cover
@@ -230,7 +237,6 @@ impl Shown {
     }
 
     fn surface(&self) -> [u8; 4] {
-        let place = place_of_normal(self.normal);
-        linear_bytes(&[place.x, place.y, self.depth, self.translucency])
+        linear_bytes(&(0.5 + 0.5 * self.normal).extend(self.translucency).to_array())
     }
 }

@@ -18,6 +18,7 @@ mod breeze;
 mod chart;
 pub mod cylinder;
 mod film;
+mod lean;
 pub mod level;
 mod paint;
 pub mod plain;
@@ -33,8 +34,9 @@ pub mod views;
 #[cfg(test)]
 mod tests;
 
-pub use chart::{ViewWeight, normal_of, place_of_normal, view_direction, view_place, views_towards};
+pub use chart::{ViewWeight, view_direction, view_place, views_towards};
 pub use cylinder::{CylinderLevel, EnvelopeVertices};
+pub use lean::Lean;
 pub use level::{Lens, Level, LevelDistances, LevelSwitches};
 pub use plain::PlainVertices;
 pub use profile::CrownProfile;
@@ -72,7 +74,7 @@ pub fn levels(
     TreeLevels {
         reduced: settings.reductions.iter().map(|reduction| simplify::reduce(model, reduction)).collect(),
         plain: plain::plain(&scene, model, cylinder.as_ref()),
-        views: ViewAtlas::bake(&scene, &settings.views),
+        views: ViewAtlas::bake(std::slice::from_ref(&scene), &settings.views),
         cylinder,
     }
 }

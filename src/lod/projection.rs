@@ -13,11 +13,11 @@ use super::{
     views::ViewBasis,
 };
 
-/// A square field of parallel rays on a tree.
+/// A rectangular field of parallel rays on a tree.
 pub(super) struct Projection<'a> {
     scene: &'a Scene,
-    /// Rays each way.
-    rays: usize,
+    /// Rays across and down.
+    rays: [usize; 2],
     /// Corners of the tree: place on the field, in rays, and depth, 0 to 1.
     corners: Vec<Vec3>,
     nearest: Vec<Seen>,
@@ -34,16 +34,16 @@ struct Seen {
 const NOTHING: Seen = Seen { depth: f32::INFINITY, triangle: u32::MAX, at: [0.0; 2] };
 
 impl<'a> Projection<'a> {
-    pub(super) fn new(scene: &'a Scene, rays: usize) -> Self {
-        Self { scene, rays, corners: vec![Vec3::ZERO; scene.corners.len()], nearest: vec![NOTHING; rays * rays] }
+    pub(super) fn new(scene: &'a Scene, rays: [usize; 2]) -> Self {
+        Self { scene, rays, corners: vec![Vec3::ZERO; scene.corners.len()], nearest: vec![NOTHING; rays[0] * rays[1]] }
     }
 
     /// Looks at the tree along `basis.forward`, at a box about `centre` whose half sides, m, lie along the basis.
     pub(super) fn look(&mut self, basis: &ViewBasis, centre: Vec3, half_m: Vec3) {
-        let rays = self.rays as f32;
-        let (right, down) = (basis.right * (0.5 * rays / half_m.x), basis.up * (-0.5 * rays / half_m.y));
+        let [across, down] = self.rays.map(|rays| 0.5 * rays as f32);
+        let middle = Vec3::new(across, down, 0.5);
+        let (right, down) = (basis.right * (across / half_m.x), basis.up * (-down / half_m.y));
         let forward = basis.forward * (0.5 / half_m.z);
-        let middle = Vec3::new(0.5 * rays, 0.5 * rays, 0.5);
         for (projected, corner) in self.corners.iter_mut().zip(&self.scene.corners) {
             let from = corner.position - centre;
             *projected = Vec3::new(from.dot(right), from.dot(down), from.dot(forward)) + middle;
@@ -60,8 +60,8 @@ impl<'a> Projection<'a> {
         let low = a.min(b).min(c);
         let high = a.max(b).max(c);
         // Rays run through the middle of their cells: from the first that is not before `low` to the last before `high`.
-        let cells = |low: f32, high: f32| (low + 0.5) as usize..((high + 0.5) as usize).min(self.rays);
-        let (columns, rows) = (cells(low.x, high.x), cells(low.y, high.y));
+        let cells = |low: f32, high: f32, rays: usize| (low + 0.5) as usize..((high + 0.5) as usize).min(rays);
+        let (columns, rows) = (cells(low.x, high.x, self.rays[0]), cells(low.y, high.y, self.rays[1]));
         if columns.is_empty() || rows.is_empty() {
             return;
         }
@@ -81,7 +81,7 @@ impl<'a> Projection<'a> {
             for x in within([u, v, 1.0 - u - v], sides, &columns) {
                 let at = [u + u_step.x * x as f32, v + v_step.x * x as f32];
                 let depth = a.z + at[0] * to_b + at[1] * to_c;
-                let seen = &mut self.nearest[y * self.rays + x];
+                let seen = &mut self.nearest[y * self.rays[0] + x];
                 if depth < seen.depth && gate.stops(at, forward) {
                     *seen = Seen { depth, triangle: triangle as u32, at };
                 }
@@ -91,7 +91,7 @@ impl<'a> Projection<'a> {
 
     /// What the ray of a column and row saw.
     pub(super) fn sample(&self, x: usize, y: usize) -> Option<Sample> {
-        let seen = self.nearest[y * self.rays + x];
+        let seen = self.nearest[y * self.rays[0] + x];
         (seen.depth < f32::INFINITY)
             .then(|| self.scene.hit(seen.triangle as usize, seen.at, 0.0).sample(seen.depth.clamp(0.0, 1.0)))
     }

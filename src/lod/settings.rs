@@ -60,7 +60,7 @@ pub struct CylinderSettings {
 pub struct ViewSettings {
     /// Views each way: a power of two, 2 to 32.
     pub across: u32,
-    /// Side of a view, texels: a power of two, 16 to 512.
+    /// Longer side of a view, texels: a power of two, 16 to 512.
     pub view_texels: u32,
     /// Rays of a texel, each way: 1 to 8.
     pub rays: u32,

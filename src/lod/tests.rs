@@ -1,8 +1,13 @@
 //! Levels of trees, and of every species that is shipped.
 
-use super::{film::Film, profile::crown_points, settings::ViewSettings, *};
+use super::{
+    film::{Alpha, Film, Sample},
+    profile::crown_points,
+    settings::ViewSettings,
+    *,
+};
 use crate::{
-    texture::{MASK_CUT_OFF, TextureData},
+    texture::{MASK_CUT_OFF, TextureData, linear},
     tree::painting::paint,
 };
 use bevy::math::{UVec2, Vec2, Vec3};
@@ -29,53 +34,123 @@ fn small() -> LevelSettings {
     }
 }
 
-/// The share of texels of a tile that pass the mask.
-fn drawn_share(texture: &TextureData, mip: usize, left: usize, top: usize, tile: [usize; 2]) -> f32 {
-    let width = texture.width as usize >> mip;
-    let rows = top..top + tile[1];
-    let texels = rows.flat_map(|y| (left..left + tile[0]).map(move |x| y * width + x));
-    let alpha = |index: usize| f32::from(texture.mips[mip][4 * index + 3]) / 255.0;
-    texels.filter(|&index| alpha(index) > MASK_CUT_OFF).count() as f32 / (tile[0] * tile[1]) as f32
+/// The texels of a tile in a mip of a texture, as bytes.
+fn tile_of(texture: &TextureData, mip: usize, [left, top]: [usize; 2], [width, height]: [usize; 2]) -> Vec<[u8; 4]> {
+    let across = texture.width as usize >> mip;
+    let texels = (top..top + height).flat_map(|y| (left..left + width).map(move |x| y * across + x));
+    texels.map(|index| std::array::from_fn(|channel| texture.mips[mip][4 * index + channel])).collect()
+}
+
+/// The tile of a view of a tree in a mip of an atlas: colours and surfaces.
+fn view_of(atlas: &ViewAtlas, tree: u32, view: UVec2, mip: usize) -> [Vec<[u8; 4]>; 2] {
+    let size = (atlas.view_texels / (1 << mip)).as_usizevec2();
+    let corner = (view + UVec2::new(0, tree * atlas.across)).as_usizevec2() * size;
+    [&atlas.colour, &atlas.surface].map(|texture| tile_of(texture, mip, corner.to_array(), size.to_array()))
+}
+
+/// Mean coverage of a tile.
+fn cover([colours, _]: &[Vec<[u8; 4]>; 2]) -> f32 {
+    colours.iter().map(|texel| f32::from(texel[3]) / 255.0).sum::<f32>() / colours.len() as f32
+}
+
+/// Mean light, normal and translucency of what is seen on a tile.
+fn mean([colours, surfaces]: &[Vec<[u8; 4]>; 2]) -> [Vec3; 3] {
+    let share = |bytes: [u8; 4]| bytes.map(|byte| f32::from(byte) / 255.0);
+    let (mut sums, mut whole) = ([Vec3::ZERO; 3], 0.0);
+    for (&colour, &surface) in colours.iter().zip(surfaces) {
+        let ([r, g, b, alpha], [x, y, z, leaf]) = (share(colour), share(surface));
+        sums[0] += alpha * Vec3::from_array(linear([r, g, b]));
+        sums[1] += alpha * (2.0 * Vec3::new(x, y, z) - 1.0);
+        sums[2] += alpha * leaf;
+        whole += alpha;
+    }
+    sums.map(|sum| sum / whole)
+}
+
+fn views_of(atlas: &ViewAtlas) -> impl Iterator<Item = (u32, UVec2)> {
+    let across = atlas.across;
+    (0..atlas.trees * across * across)
+        .map(move |tile| (tile / across / across, UVec2::new(tile % across, tile / across % across)))
 }
 
 #[test]
-fn tiles_keep_their_coverage_in_all_mips_and_a_free_rim() {
-    let (species, model, textures) = planted("birch", 1.0);
-    let scene = Scene::new(&species, &model, &textures);
-    let atlas = ViewAtlas::bake(&scene, &ViewSettings { across: 4, view_texels: 64, rays: 2 });
-    assert_eq!(atlas.colour.mips.len(), 5, "64 to 4 texels");
-    assert_eq!(atlas.surface.mips.len(), 5);
-    for (column, row) in (0..4).flat_map(|row| (0..4).map(move |column| (column, row))) {
-        let share = |mip: usize| {
-            let tile = 64 >> mip;
-            drawn_share(&atlas.colour, mip, column * tile, row * tile, [tile, tile])
-        };
-        for mip in 1..4 {
-            // Half a texel of the mip, and ties of some texels.
-            let least = 2.0 / (64 >> mip) as f32 / (64 >> mip) as f32;
-            assert!((share(mip) - share(0)).abs() < 0.01 + least, "{column} {row}: {} for {}", share(mip), share(0));
-        }
-        for texel in 0..64 {
-            let texels = [(texel, 0), (texel, 63), (0, texel), (63, texel)];
-            for (x, y) in texels {
-                let index = (row * 64 + y) * 256 + column * 64 + x;
-                let alpha = atlas.colour.mips[0][4 * index + 3];
-                assert!(f32::from(alpha) / 255.0 < MASK_CUT_OFF, "{column} {row}: {alpha} at {x} {y}");
+fn mips_keep_what_is_seen_of_a_tile_and_tiles_have_a_free_rim() {
+    for (name, size) in [("birch", UVec2::new(32, 64)), ("fir", UVec2::new(16, 64)), ("hazel", UVec2::new(64, 64))] {
+        let (species, model, textures) = planted(name, 1.0);
+        let scene = Scene::new(&species, &model, &textures);
+        let atlas = ViewAtlas::bake(&[scene], &ViewSettings { across: 4, view_texels: 64, rays: 2 });
+        assert_eq!(atlas.view_texels, size, "{name}");
+        let mips = size.min_element().ilog2() as usize;
+        assert_eq!([atlas.colour.mips.len(), atlas.surface.mips.len()], [mips; 2], "{name}: to 2 texels");
+        for (tree, view) in views_of(&atlas) {
+            let finest = view_of(&atlas, tree, view, 0);
+            let (seen, means) = (cover(&finest), mean(&finest));
+            assert!(seen > 0.1, "{name} {view}: {seen}");
+            for mip in 1..mips {
+                let coarser = view_of(&atlas, tree, view, mip);
+                assert!((cover(&coarser) - seen).abs() < 0.5 / 255.0, "{name} {view} {mip}: {}", cover(&coarser));
+                // Half a step of all bytes: of dark colours, where the steps of sRGB are finest, and of normals.
+                for (mean, finest) in mean(&coarser).into_iter().zip(means) {
+                    assert!(mean.distance(finest) < 2.0 / 255.0, "{name} {view} {mip}: {mean} for {finest}");
+                }
+            }
+            let (width, height) = (size.x as usize, size.y as usize);
+            for (index, texel) in finest[0].iter().enumerate() {
+                let (x, y) = (index % width, index / width);
+                let is_rim = x == 0 || y == 0 || x == width - 1 || y == height - 1;
+                assert!(!is_rim || texel[3] < 128, "{name} {view}: {} at {x} {y}", texel[3]);
             }
         }
     }
 }
 
 #[test]
+fn normals_of_one_place_that_differ_are_short() {
+    let sample = |normal| Sample { colour: [0.5; 3], normal, translucency: 1.0, depth: 0.0 };
+    let mut film = Film::new(4, 4);
+    film.texels[0].add(&sample(Vec3::X), 0.5);
+    film.texels[0].add(&sample(Vec3::Z), 0.5);
+    film.texels[1].add(&sample(Vec3::NEG_Y), 0.25);
+    let surface = film.developed([4, 4], 2, Alpha::Share).surface;
+    let normal = |mip: usize, index: usize| {
+        let [x, y, z] = std::array::from_fn(|channel| f32::from(surface.mips[mip][4 * index + channel]) / 127.5 - 1.0);
+        Vec3::new(x, y, z)
+    };
+    for (mip, index, expected) in
+        [(0, 0, Vec3::new(0.5, 0.0, 0.5)), (0, 1, Vec3::NEG_Y), (1, 0, Vec3::new(0.4, -0.2, 0.4))]
+    {
+        assert!(normal(mip, index).distance(expected) < 0.01, "{mip} {index}: {}", normal(mip, index));
+    }
+}
+
+#[test]
+fn trees_of_an_atlas_have_views_as_if_alone() {
+    let (species, model, textures) = planted("birch", 0.5);
+    let other = TreeModel::bake(&species, 0.5 * species.age.mature_years, 2);
+    let scenes = [&model, &other, &model].map(|model| Scene::new(&species, model, &textures));
+    let atlas = ViewAtlas::bake(&scenes, &small().views);
+    let tall = scenes.iter().flat_map(|scene| &scene.corners).map(|corner| corner.position.y).fold(0.0, f32::max);
+    assert!((atlas.frame.centre.y + atlas.frame.half_height_m) > tall);
+    assert_eq!(atlas.colour.height, 3 * 4 * atlas.view_texels.y);
+    for view in views_of(&atlas).filter(|(tree, _)| *tree == 0).map(|(_, view)| view) {
+        let [one, other, again] = [0, 1, 2].map(|tree| view_of(&atlas, tree, view, 0));
+        assert!(one == again && one != other, "{view}");
+    }
+    let place = atlas.atlas_place(1, UVec2::new(2, 3), Vec2::new(0.5, 0.25));
+    assert!(place.distance(Vec2::new(2.5 / 4.0, 7.25 / 12.0)) < 1e-6, "{place}");
+}
+
+#[test]
 fn an_atlas_leads_from_the_eye_to_the_tile() {
     let (species, model, textures) = planted("fir", 0.3);
     let scene = Scene::new(&species, &model, &textures);
-    let atlas = ViewAtlas::bake(&scene, &small().views);
-    for corner in scene.corners.iter().step_by(7) {
+    let corners = scene.corners.clone();
+    let atlas = ViewAtlas::bake(&[scene], &small().views);
+    for corner in corners.iter().step_by(7) {
         for (basis, view, _) in atlas.towards(Vec3::new(0.3, 0.5, -0.8)) {
             let place = atlas.frame.place_in(&basis, corner.position);
             assert!(place.cmpge(Vec3::ZERO).all() && place.cmple(Vec3::ONE).all(), "{place}");
-            let texel = atlas.atlas_place(view, place.truncate()) * atlas.across as f32;
+            let texel = atlas.atlas_place(0, view, place.truncate()) * atlas.across as f32;
             assert_eq!(texel.floor().as_uvec2(), view);
             assert!((basis.right.cross(basis.up) + basis.forward).length() < 1e-5);
         }
@@ -167,8 +242,32 @@ fn every_shipped_species_has_levels() {
                 .collect();
             vectors.extend(all.reduced.iter().flat_map(|meshes| meshes.leaves.positions.iter().copied()));
             assert!(vectors.iter().flatten().all(|value| value.is_finite()), "{name} at {age}");
-            let drawn = drawn_share(&all.views.colour, 0, 0, 0, [32, 32]);
+            let drawn = cover(&view_of(&all.views, 0, UVec2::ZERO, 0));
             assert!(drawn > 0.0, "{name} at {age} is not seen");
         }
     }
+}
+
+#[test]
+fn a_picture_leans_where_the_tree_does() {
+    // Slender trees bend as a whole; what moves of an oak are its branches, which no lean shows.
+    for (name, most) in [("fir", 0.1), ("norway_spruce", 0.1), ("birch", 0.2), ("oak", 0.8)] {
+        let (species, model, textures) = planted(name, 1.0);
+        let scene = Scene::new(&species, &model, &textures);
+        let lean = Lean::of(&scene, &model);
+        // As `far_card.wgsl` does, in a fresh breeze of 9.4 m/s.
+        let free = lean.gain * 9.4 * 9.4;
+        let sine = free / (1.0 + (free / 1.1_f32.sin()).powi(2)).sqrt();
+        let leaning = |p: Vec3| Vec3::new(p.x + p.y * sine, p.y * (1.0 - sine * sine).sqrt(), p.z);
+        let (mut off, mut moved) = (0.0, 0.0);
+        for (rest, bent) in scene.corners.iter().zip(&lean::bent(&scene, &model, Vec3::X).corners) {
+            off += leaning(rest.position).distance_squared(bent.position);
+            moved += rest.position.distance_squared(bent.position);
+        }
+        assert!(sine > 0.01 && off < most * moved, "{name}: {sine}, {}", off / moved);
+        assert_eq!(lean.class, model.beams[0].class, "{name}");
+    }
+    let (species, mut model, textures) = planted("birch", 0.1);
+    model.beams.clear();
+    assert_eq!(Lean::of(&Scene::new(&species, &model, &textures), &model), Lean::default());
 }

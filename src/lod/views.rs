@@ -1,50 +1,55 @@
-//! Views of a tree from all over the upper hemisphere, in one atlas; better than the paper's low levels, which know one
+//! Views of trees from all over the upper hemisphere, in one atlas; better than the paper's low levels, which know one
 //! side of a tree only.
 //!
 //! A view is a parallel projection of the upright cylinder around the tree: `radius_m` to each side, and
 //! `half_height_m cos e + radius_m sin e` up and down where the eye stands at the elevation `e`. Slender trees so fill
-//! their tiles as well as round ones do. Views lie on a grid over the unfolded hemisphere ([`view_place`]), so that three
+//! their tiles as well as round ones do, and tiles are about as slender as the tree: so texels are about square, and what
+//! is seen of them has as much detail one way as the other. Views lie on a grid over the unfolded hemisphere ([`view_place`]), so that three
 //! of them surround any direction ([`views_towards`]).
 //!
 //! What a shader does, its eye in the direction `to_eye` (tree-local, from [`ViewFrame::centre`]) and `point` any place on
-//! a rectangle that faces the eye: for each of the three views, [`ViewFrame::place_in`] is where the point lies on the
-//! tile, 0 to 1; colours, normals and alphas are added by weight. Depth can shift the point along the view first.
+//! a rectangle that faces the eye: it draws lots for one of the three views, by weight, and for whether there is a tree, by
+//! the view's alpha; [`ViewFrame::place_in`] is where the point lies on the tile, 0 to 1. To add up the three alphas instead
+//! and to test the sum against a half would thin out what is sparse and thicken what is dense.
 
 use bevy::math::{UVec2, Vec2, Vec3};
 
 use super::{
     chart::{view_direction, view_place, views_towards},
-    film::Film,
+    film::{Alpha, Film},
     projection::Projection,
     scene::Scene,
     settings::ViewSettings,
 };
 use crate::texture::TextureData;
 
-/// Tiles have at least so many texels in the coarsest mip.
-const LEAST_TILE: usize = 4;
+/// Tiles have at least so many texels each way in the coarsest mip.
+const LEAST_TILE: usize = 2;
+/// Tiles are at most so many times as long as they are wide.
+const MOST_SLENDER: f32 = 4.0;
 /// How many texels are left free around the tree in a tile.
 const MARGIN_TEXELS: f32 = 1.0;
 
-/// The views of one tree.
+/// The views of one tree, or of several of a species, one tree's below another's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewAtlas {
-    /// Views each way.
+    /// Number of trees.
+    pub trees: u32,
+    /// Views of a tree each way.
     pub across: u32,
-    /// Side of a view in the first mip, texels.
-    pub view_texels: u32,
+    /// Width and height of a view in the first mip, texels.
+    pub view_texels: UVec2,
     /// What the views are of.
     pub frame: ViewFrame,
-    /// Colour, sRGB, spread beyond the outline; in alpha the coverage, which passes the cut-off of
-    /// [a mask](crate::texture::MASK_CUT_OFF) on as many texels, in every mip, as rays hit the tree. Mips end where a tile
-    /// has 4 texels.
+    /// Colour, sRGB, spread beyond the outline; in alpha the share of rays that hit the tree. Mips end where a tile is 2
+    /// texels wide or high.
     pub colour: TextureData,
-    /// Linear: in red and green the [place](super::place_of_normal) of the tree-local normal, in blue the depth, 0 nearest
-    /// to 1 farthest of [`ViewFrame::half_m`], in alpha the share of the species' translucency (0 for wood).
+    /// Linear: in red, green and blue half the mean tree-local normal and a half (where normals differ, their mean is
+    /// shorter than 1), in alpha the share of the species' translucency (0 for wood).
     pub surface: TextureData,
 }
 
-/// The upright cylinder that views are of.
+/// The upright cylinder that views are of: around all trees of an atlas, if they stood in one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewFrame {
     /// Its middle, tree-local, m.
@@ -83,9 +88,9 @@ impl ViewBasis {
 }
 
 impl ViewFrame {
-    /// Around all corners of a tree.
-    fn around(scene: &Scene) -> Self {
-        let points = || scene.corners.iter().map(|corner| corner.position);
+    /// Around all corners of trees.
+    fn around(scenes: &[Scene]) -> Self {
+        let points = || scenes.iter().flat_map(|scene| &scene.corners).map(|corner| corner.position);
         let (min, max) =
             points().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), point| (min.min(point), max.max(point)));
         if min.cmpgt(max).any() {
@@ -96,9 +101,22 @@ impl ViewFrame {
         Self { centre, radius_m, half_height_m: (0.5 * (max.y - min.y)).max(0.01) }
     }
 
-    /// The same, with `share` more on all sides.
-    fn widened(self, share: f32) -> Self {
-        Self { radius_m: self.radius_m * (1.0 + share), half_height_m: self.half_height_m * (1.0 + share), ..self }
+    /// The size of a view, texels: powers of two, the longer side given, and about as slender as the tree.
+    fn tile(self, longer: u32) -> UVec2 {
+        let slender = (self.half_height_m / self.radius_m).clamp(1.0 / MOST_SLENDER, MOST_SLENDER);
+        let halvings = slender.log2().round() as i32;
+        UVec2::new(longer >> halvings.max(0), longer >> (-halvings).max(0))
+    }
+
+    /// The same, with room for a rim that is free of the tree on tiles of a size, texels.
+    fn with_margin(self, tile: UVec2) -> Self {
+        let wider = |texels: u32| texels as f32 / (texels as f32 - 2.0 * MARGIN_TEXELS);
+        // From above, the radius is what is seen in both directions.
+        Self {
+            radius_m: self.radius_m * wider(tile.min_element()),
+            half_height_m: self.half_height_m * wider(tile.y),
+            ..self
+        }
     }
 
     /// Half the width, height and depth of a view, m.
@@ -123,14 +141,22 @@ impl ViewFrame {
 }
 
 impl ViewAtlas {
-    /// Looks at a tree from all views.
+    /// Looks at trees from all views.
     #[must_use]
-    pub fn bake(scene: &Scene, settings: &ViewSettings) -> Self {
-        let (across, tile) = (settings.across, settings.view_texels as usize);
-        let frame = ViewFrame::around(scene).widened(2.0 * MARGIN_TEXELS / (tile as f32 - 2.0 * MARGIN_TEXELS));
-        let film = expose(scene, settings, &frame);
-        let developed = film.developed(tile, tile, LEAST_TILE);
-        Self { across, view_texels: settings.view_texels, frame, colour: developed.colour, surface: developed.surface }
+    pub fn bake(scenes: &[Scene], settings: &ViewSettings) -> Self {
+        let frame = ViewFrame::around(scenes);
+        let view_texels = frame.tile(settings.view_texels);
+        let frame = frame.with_margin(view_texels);
+        let tile = [view_texels.x as usize, view_texels.y as usize];
+        let developed = expose(scenes, settings, tile, &frame).developed(tile, LEAST_TILE, Alpha::Share);
+        Self {
+            trees: scenes.len() as u32,
+            across: settings.across,
+            view_texels,
+            frame,
+            colour: developed.colour,
+            surface: developed.surface,
+        }
     }
 
     /// The three views around a direction from the tree to the eye, with their axes and shares.
@@ -139,10 +165,11 @@ impl ViewAtlas {
         views_towards(to_eye, self.across).map(|one| (ViewBasis::of_view(one.view, self.across), one.view, one.weight))
     }
 
-    /// Place in the atlas, 0 to 1 each way, of a place on the tile of a view.
+    /// Place in the atlas, 0 to 1 each way, of a place on the tile of a view of a tree.
     #[must_use]
-    pub fn atlas_place(&self, view: UVec2, place: Vec2) -> Vec2 {
-        (view.as_vec2() + place.clamp(Vec2::ZERO, Vec2::ONE)) / self.across as f32
+    pub fn atlas_place(&self, tree: u32, view: UVec2, place: Vec2) -> Vec2 {
+        let tile = (view + UVec2::new(0, tree * self.across)).as_vec2() + place.clamp(Vec2::ZERO, Vec2::ONE);
+        tile / UVec2::new(self.across, self.across * self.trees).as_vec2()
     }
 
     /// The view nearest to a direction from the tree to the eye.
@@ -152,16 +179,18 @@ impl ViewAtlas {
     }
 }
 
-pub(super) fn expose(scene: &Scene, settings: &ViewSettings, frame: &ViewFrame) -> Film {
-    let (across, tile, per_texel) = (settings.across, settings.view_texels as usize, settings.rays as usize);
-    let side = across as usize * tile;
-    let mut film = Film::new(side, side);
-    let mut projection = Projection::new(scene, tile * per_texel);
-    for (row, column) in (0..across).flat_map(|row| (0..across).map(move |column| (row, column))) {
-        let basis = ViewBasis::of_view(UVec2::new(column, row), across);
-        projection.look(&basis, frame.centre, frame.half_m(&basis));
-        let corner = [column as usize * tile, row as usize * tile];
-        film.record(corner, [tile, tile], per_texel, |x, y| projection.sample(x, y));
+fn expose(scenes: &[Scene], settings: &ViewSettings, tile: [usize; 2], frame: &ViewFrame) -> Film {
+    let (across, per_texel) = (settings.across, settings.rays as usize);
+    let [width, height] = tile.map(|texels| across as usize * texels);
+    let mut film = Film::new(width, height * scenes.len());
+    for (tree, scene) in scenes.iter().enumerate() {
+        let mut projection = Projection::new(scene, tile.map(|texels| texels * per_texel));
+        for (row, column) in (0..across).flat_map(|row| (0..across).map(move |column| (row, column))) {
+            let basis = ViewBasis::of_view(UVec2::new(column, row), across);
+            projection.look(&basis, frame.centre, frame.half_m(&basis));
+            let corner = [column as usize * tile[0], tree * height + row as usize * tile[1]];
+            film.record(corner, tile, per_texel, |x, y| projection.sample(x, y));
+        }
     }
     film
 }

@@ -22,6 +22,7 @@ use bevy::{
     mesh::{Indices, PrimitiveTopology},
     prelude::*,
 };
+use std::sync::Arc;
 
 /// All that is prepared of a species at one age.
 pub(super) struct Cut {
@@ -88,7 +89,11 @@ pub(super) fn cut(species: &Species, painting: bool, models: Vec<TreeModel>, sty
 }
 
 fn full_level(model: TreeModel, bark: Cloth) -> LevelCut {
-    LevelCut { wood: Piece { mesh: wood_mesh(model.wood), cloth: bark }, leaves: foliage(model.leaves), nested: false }
+    LevelCut {
+        wood: Piece { mesh: wood_mesh(Arc::unwrap_or_clone(model.wood)), cloth: bark },
+        leaves: foliage(Arc::unwrap_or_clone(model.leaves)),
+        nested: false,
+    }
 }
 
 fn foliage(leaves: LeafVertices) -> Option<Piece> {

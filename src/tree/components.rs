@@ -78,6 +78,12 @@ impl Tree {
         });
         mixed(raw)
     }
+
+    /// Which of a species' variants a tree is that has a seed of its own.
+    #[cfg(feature = "render")]
+    pub(crate) fn variant_of(seed: u64, variants: u32) -> u32 {
+        (mixed(seed) % u64::from(variants.max(1))) as u32
+    }
 }
 
 /// The finaliser of `SplitMix64` (Steele, Lea & Flood 2014): nearby numbers become unrelated ones.

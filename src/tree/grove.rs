@@ -189,26 +189,33 @@ pub(super) fn grow_trees(
     trees: Query<(Entity, &Tree, &Transform, Option<&Grown>)>,
     young: Query<Entity, (With<Tree>, Or<(Changed<Tree>, Without<Grown>)>)>,
 ) {
-    let renewed: Vec<AssetId<Species>> = baked.read().map(|message| message.species).collect();
-    let mut grow = |(entity, tree, transform, grown): (Entity, &Tree, &Transform, Option<&Grown>)| {
+    let renewed: Vec<_> = baked.read().map(|message| (message.species, message.step)).collect();
+    let is_renewed = |tree: &Tree| {
         let id = tree.species.id();
-        let Some(entry) = grove.get(id) else { return };
+        let step = || grove.get(id).map(|entry| step_of_age(&entry.species.age, tree.age_years));
+        renewed.iter().any(|(other, _)| *other == id) && step().is_some_and(|step| renewed.contains(&(id, step)))
+    };
+    let due: Vec<_> = if renewed.is_empty() {
+        young.iter().filter_map(|entity| trees.get(entity).ok()).collect()
+    } else {
+        trees.iter().filter(|(entity, tree, ..)| young.contains(*entity) || is_renewed(tree)).collect()
+    };
+    for (entity, tree, transform, grown) in due {
+        let id = tree.species.id();
+        let Some(entry) = grove.get(id) else { continue };
         let step = step_of_age(&entry.species.age, tree.age_years);
-        let Some(stage) = entry.stages.get(&step) else { return grove.bypass_change_detection().bake(id, step) };
+        let Some(stage) = entry.stages.get(&step) else {
+            grove.bypass_change_detection().bake(id, step);
+            continue;
+        };
         let seed = tree.seed_at(transform.translation);
         let Some(variant) = seed.checked_rem(stage.models.len() as u64).map(|variant| variant as usize) else {
-            return;
+            continue;
         };
         let growing = Grown { model: stage.models[variant].clone(), variant, seed };
         if grown != Some(&growing) {
             commands.entity(entity).insert(growing);
         }
-    };
-    if renewed.is_empty() {
-        young.iter().filter_map(|entity| trees.get(entity).ok()).for_each(&mut grow);
-    } else {
-        let due = |tree: &Tree, entity| renewed.contains(&tree.species.id()) || young.contains(entity);
-        trees.iter().filter(|(entity, tree, ..)| due(tree, *entity)).for_each(&mut grow);
     }
 }
 
@@ -235,5 +242,32 @@ mod tests {
             let drawn = age_of_step(&age, step_of_age(&age, Some(years)));
             assert!((Age::YOUNGEST_YEARS..=age.oldest_years).contains(&drawn), "{years} is drawn as {drawn}");
         }
+    }
+
+    #[cfg(feature = "render")]
+    #[test]
+    fn a_tree_of_a_seed_is_the_variant_that_is_foretold() {
+        let mut app = App::new();
+        app.add_plugins((bevy::asset::AssetPlugin::default(), bevy::app::TaskPoolPlugin::default()));
+        app.init_asset::<Species>().init_asset::<TreeModel>().init_resource::<Grove>().add_message::<SpeciesBaked>();
+        app.add_systems(Update, (adopt_species, receive_models, grow_trees).chain());
+        let young = Species { variants: 3, ..Species::default() };
+        let species = app.world_mut().resource_mut::<Assets<Species>>().add(young);
+        for seed in 0..20 {
+            let tree = Tree::new(species.clone()).with_seed(seed).with_age(Age::YOUNGEST_YEARS);
+            app.world_mut().spawn((tree, Transform::from_xyz(seed as f32, 0.0, 0.0)));
+        }
+        let mut grown = Vec::new();
+        for _ in 0..10_000 {
+            app.update();
+            let mut trees = app.world_mut().query::<(&Tree, &Grown)>();
+            grown = trees.iter(app.world()).filter_map(|(tree, grown)| Some((tree.seed?, grown.variant))).collect();
+            if grown.len() == 20 {
+                break;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        assert_eq!(grown.len(), 20);
+        assert!(grown.iter().all(|&(seed, variant)| Tree::variant_of(seed, 3) as usize == variant), "{grown:?}");
     }
 }

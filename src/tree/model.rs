@@ -9,6 +9,7 @@ use super::{
 };
 use crate::dynamics::pose::{BeamDynamics, BeamPose, TreePoser};
 use bevy::{asset::Asset, math::Vec3, reflect::TypePath};
+use std::sync::Arc;
 
 /// One variant of a species: skeleton, beams, vertices, bounds. Immutable once baked.
 #[derive(Asset, TypePath, Clone, Debug)]
@@ -17,10 +18,10 @@ pub struct TreeModel {
     pub skeleton: Skeleton,
     /// The beams as they are posed, in the order of the skeleton's.
     pub beams: Vec<BeamDynamics>,
-    /// Trunk and branches.
-    pub wood: WoodVertices,
+    /// Trunk and branches. Shared, as are the leaves: whoever cuts a model in the background takes a copy of it.
+    pub wood: Arc<WoodVertices>,
     /// The foliage; empty for a bare tree.
-    pub leaves: LeafVertices,
+    pub leaves: Arc<LeafVertices>,
     /// Box around the tree in every pose that the saturating beams can take, tree-local, m.
     pub bounds: SwayBounds,
 }
@@ -42,7 +43,7 @@ impl TreeModel {
         let wood = wood(species, &skeleton);
         let leaves = leaves(species, &skeleton);
         let bounds = sway_bounds(&beams, &wood, &leaves);
-        Self { skeleton, beams, wood, leaves, bounds }
+        Self { skeleton, beams, wood: Arc::new(wood), leaves: Arc::new(leaves), bounds }
     }
 
     /// Height of the tree at rest, m.

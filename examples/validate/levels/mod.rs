@@ -26,6 +26,9 @@ const STEP: f32 = 0.2 / 16.0;
 struct Found {
     /// How much more or less of the picture the lower level covers, as a share of what the full tree covers.
     coverage: f64,
+    /// How its outline differs: that much of what the full tree covers lies elsewhere, or is missing, by squares of a tenth
+    /// of its height.
+    outline: f64,
     /// How its mean colour differs, of 255.
     colour: f64,
     /// The greatest difference of two frames while it fades, over the wind's own from frame to frame.
@@ -34,11 +37,15 @@ struct Found {
     abrupt: f64,
 }
 
-pub fn run(picture: &Path) -> Report {
+/// All species, or one of them.
+pub fn run(picture: &Path, only: Option<&str>) -> Report {
     let mut sheet = Sheet::default();
     let [mut worst, mut worst_painted, mut worst_paper] = [Found::default(); 3];
-    println!("{:<18} {:<22} {:>9} {:>9} {:>9} {:>9}", "species", "change", "coverage", "colour", "pop", "at once");
-    for species in SPECIES {
+    println!(
+        "{:<18} {:<22} {:>9} {:>9} {:>9} {:>9} {:>9}",
+        "species", "change", "coverage", "outline", "colour", "pop", "at once"
+    );
+    for species in SPECIES.into_iter().filter(|species| only.is_none_or(|only| *species == only)) {
         let mut stand = match Stand::new(species) {
             Ok(stand) => stand,
             Err(error) => {
@@ -69,15 +76,21 @@ pub fn run(picture: &Path) -> Report {
     report.tell("abrupt_ratio_worst", worst.abrupt, "the same if levels changed at once");
     report.tell("pop_ratio_painted", worst_painted.pop, "of painters' crowns, which hardly move");
     report.tell("coverage_difference_painted", worst_painted.coverage, "painters' crowns");
+    report.tell("colour_difference_painted", worst_painted.colour, "painters' crowns");
     report.tell("coverage_difference_worst", worst.coverage, "of a lower level, as a share of the full tree's");
+    report.tell(
+        "outline_difference_worst",
+        worst.outline,
+        "by squares of a tenth of a tree, as a share of the full tree's",
+    );
     report.tell("colour_difference_worst", worst.colour, "of mean colours, of 255");
     report.tell("paper_coverage_difference_worst", worst_paper.coverage, "the paper's levels");
     report.tell("paper_colour_difference_worst", worst_paper.colour, "the paper's levels");
     report
 }
 
-fn tell(species: &str, change: &str, Found { coverage, colour, pop, abrupt }: Found) {
-    println!("{species:<18} {change:<22} {coverage:>9.3} {colour:>9.1} {pop:>9.2} {abrupt:>9.2}");
+fn tell(species: &str, change: &str, Found { coverage, outline, colour, pop, abrupt }: Found) {
+    println!("{species:<18} {change:<22} {coverage:>9.3} {outline:>9.3} {colour:>9.1} {pop:>9.2} {abrupt:>9.2}");
 }
 
 /// One of the three changes of our own levels.
@@ -98,7 +111,7 @@ fn ours(stand: &mut Stand, change: usize, sheet: &mut Sheet) -> Found {
         let [before, after] = [at, at + STEP].map(|share| stand.shoot(Shot::Fading(change, share)));
         pop = pop.max(difference(&before, &after) / wind);
     }
-    Found { pop, abrupt: difference(&finer, &coarser) / wind, ..compare(&full, &coarser) }
+    Found { pop, abrupt: difference(&finer, &coarser) / wind, ..compare(&full, &coarser, stand.tenth_px()) }
 }
 
 /// One of the paper's lower levels.
@@ -107,13 +120,14 @@ fn papers(stand: &mut Stand, level: usize, sheet: &mut Sheet) -> Found {
     let full = stand.shoot(Shot::Full);
     let lower = stand.shoot(Shot::Paper(level + 1));
     sheet.add(&lower, stand.crop());
-    compare(&full, &lower)
+    compare(&full, &lower, stand.tenth_px())
 }
 
 impl Found {
     fn worse(self, other: Self) -> Self {
         Self {
             coverage: self.coverage.max(other.coverage),
+            outline: self.outline.max(other.outline),
             colour: self.colour.max(other.colour),
             pop: if self.pop.is_nan() { self.pop } else { self.pop.max(other.pop) },
             abrupt: self.abrupt.max(other.abrupt),
@@ -121,12 +135,15 @@ impl Found {
     }
 }
 
-/// Coverage and colour of a level beside the full trees.
-fn compare(full: &RgbImage, level: &RgbImage) -> Found {
+/// Coverage, outline and colour of a level beside the full trees.
+fn compare(full: &RgbImage, level: &RgbImage, tenth_px: u32) -> Found {
+    let (squares, others) = (squares(full, tenth_px), squares(level, tenth_px));
     let (full, level) = (covered(full), covered(level));
+    let moved: u32 = squares.iter().zip(&others).map(|(one, other)| one.abs_diff(*other)).sum();
+    let outline = f64::from(moved) / full.0.max(1.0);
     let coverage = (level.0 / full.0.max(1.0) - 1.0).abs();
     let apart = full.1.iter().zip(level.1).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-    Found { coverage, colour: (apart / 3.0).sqrt(), ..Found::default() }
+    Found { coverage, outline, colour: (apart / 3.0).sqrt(), ..Found::default() }
 }
 
 /// Number of pixels that are not background, and their mean colour.
@@ -135,6 +152,16 @@ fn covered(picture: &RgbImage) -> (f64, [f64; 3]) {
     let count = drawn().count() as f64;
     let mean = [0, 1, 2].map(|channel| drawn().map(|pixel| f64::from(pixel.0[channel])).sum::<f64>() / count.max(1.0));
     (count, mean)
+}
+
+/// Pixels of each square that are not background.
+fn squares(picture: &RgbImage, side_px: u32) -> Vec<u32> {
+    let across = picture.width().div_ceil(side_px);
+    let mut squares = vec![0; (across * picture.height().div_ceil(side_px)) as usize];
+    for (x, y, pixel) in picture.enumerate_pixels() {
+        squares[(y / side_px * across + x / side_px) as usize] += u32::from(!stand::is_background(pixel));
+    }
+    squares
 }
 
 /// Mean difference of two pictures, of 255.

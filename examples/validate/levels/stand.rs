@@ -109,6 +109,11 @@ impl Stand {
         }
     }
 
+    /// A tenth of a tree in the picture, pixels.
+    pub fn tenth_px(&self) -> u32 {
+        ((0.1 * self.size_px).round() as u32).max(1)
+    }
+
     /// Left, top, width and height of what a sheet needs of the pictures.
     pub fn crop(&self) -> [u32; 4] {
         let height = (1.25 * self.size_px).min(HEIGHT as f32);

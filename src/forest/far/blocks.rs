@@ -1,7 +1,7 @@
 //! Plants blocks of cells about the viewers in the background, and draws each as one mesh a species.
 
 use super::{
-    looks::FarLooks,
+    looks::{FarLook, FarLooks},
     mesh::{FarTree, block_mesh},
 };
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
     scatter::Planted,
     setting::SettingError,
     sway::{CulledOnGpu, DrawPath},
-    tree::growth::age::Age,
+    tree::{Tree, growth::age::Age},
     viewpoint::Viewpoints,
 };
 use bevy::{
@@ -165,8 +165,7 @@ fn begin(entity: Entity, forest: &ForestCells, wanted: bool, commands: &mut Comm
 
 fn plant_block(block: IVec2, cells: i32, forest: &ForestCells, looks: &FarLooks) -> Task<Vec<Drawn>> {
     let (planter, ground) = (forest.shared_planter(), forest.ground());
-    let shapes: Vec<(Age, f32)> =
-        forest.species().iter().filter_map(|id| looks.get(id.id())).map(|look| (look.age, look.reach_m)).collect();
+    let shapes: Vec<Shape> = forest.species().iter().filter_map(|id| looks.get(id.id())).map(Shape::from).collect();
     AsyncComputeTaskPool::get().spawn(async move {
         let corner = planter.corner_m(block * cells).as_vec2();
         let mut trees: Vec<Vec<FarTree>> = vec![Vec::new(); shapes.len()];
@@ -175,25 +174,41 @@ fn plant_block(block: IVec2, cells: i32, forest: &ForestCells, looks: &FarLooks)
             planter.plant(block * cells + cell, &ground, &mut planted);
             for plant in &planted {
                 let species = usize::from(plant.species);
-                let Some((age, _)) = shapes.get(species) else { continue };
-                trees[species].push(far_tree(plant, age, corner));
+                let Some(shape) = shapes.get(species) else { continue };
+                trees[species].push(far_tree(plant, shape, corner));
             }
         }
         let drawn = |(species, trees): (usize, Vec<FarTree>)| {
-            let (mesh, bounds) = block_mesh(&trees, shapes[species].1);
+            let (mesh, bounds) = block_mesh(&trees, shapes[species].reach_m);
             Drawn { species, mesh, bounds, trees: trees.len() }
         };
         trees.into_iter().enumerate().filter(|(_, trees)| !trees.is_empty()).map(drawn).collect()
     })
 }
 
-/// A plant as a card: as large as the tree that it would be near.
-fn far_tree(plant: &Planted, age: &Age, corner: Vec2) -> FarTree {
+/// What a task needs of a [`FarLook`].
+#[derive(Clone, Copy)]
+struct Shape {
+    age: Age,
+    reach_m: f32,
+    variants: u32,
+    trees: u32,
+}
+
+impl From<&FarLook> for Shape {
+    fn from(&FarLook { age, reach_m, variants, trees, .. }: &FarLook) -> Self {
+        Self { age, reach_m, variants, trees }
+    }
+}
+
+/// A plant as a card: as large as the tree that it would be near, and with its views if there are any.
+fn far_tree(plant: &Planted, shape: &Shape, corner: Vec2) -> FarTree {
     FarTree {
         foot: plant.position - Vec3::new(corner.x, 0.0, corner.y),
         turn_rad: plant.turn_rad,
-        size: age.stage(plant.age_years).height * plant.vigour,
+        size: shape.age.stage(plant.age_years).height * plant.vigour,
         tint: plant.tint,
+        tree: Tree::variant_of(u64::from(plant.seed), shape.variants) % shape.trees.max(1),
     }
 }
 

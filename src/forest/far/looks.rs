@@ -2,13 +2,14 @@
 
 use super::{
     material::{FarMaterial, far_material},
+    mesh::MOST_TREES,
     near::NearCells,
 };
 use crate::{
     forest::cells::ForestCells,
-    lod::{LevelSettings, Scene, ViewAtlas},
+    lod::{Lean, LevelSettings, Scene, ViewAtlas},
     sway::{DrawPath, StandTables, TreeLighting},
-    tree::{Species, TreeModel, growth::age::Age, painting::paint},
+    tree::{Species, bake_variants, growth::age::Age, painting::paint},
 };
 use bevy::{
     platform::collections::HashMap,
@@ -30,12 +31,16 @@ pub(super) struct FarLook {
     pub age: Age,
     /// How far the mature tree reaches from its foot, m.
     pub reach_m: f32,
+    /// How many variants the species has, and of how many there are views: of the first ones.
+    pub variants: u32,
+    pub trees: u32,
 }
 
 struct Baked {
     species: Species,
     summer: [f32; 3],
     atlas: ViewAtlas,
+    leans: Vec<Lean>,
 }
 
 impl FarLooks {
@@ -51,10 +56,13 @@ impl FarLooks {
 }
 
 fn bake(species: Species) -> Baked {
-    let model = TreeModel::bake(&species, species.age.mature_years, species.seed);
     let textures = paint(&species);
-    let atlas = ViewAtlas::bake(&Scene::new(&species, &model, &textures), &LevelSettings::default().views);
-    Baked { summer: textures.foliage_colour(), atlas, species }
+    let mut models = bake_variants(&species, species.age.mature_years);
+    models.truncate(MOST_TREES as usize);
+    let scenes: Vec<Scene> = models.iter().map(|model| Scene::new(&species, model, &textures)).collect();
+    let atlas = ViewAtlas::bake(&scenes, &LevelSettings::default().views);
+    let leans = scenes.iter().zip(&models).map(|(scene, model)| Lean::of(scene, model)).collect();
+    Baked { summer: textures.foliage_colour(), atlas, leans, species }
 }
 
 /// Starts making the views of species that have come or were changed, and takes over those that are made.
@@ -92,10 +100,12 @@ pub(super) fn bake_far_looks(
     }
     let FarLooks { looks, baking } = &mut *looks;
     baking.retain_mut(|(id, task)| {
-        let Some(Baked { species, summer, atlas }) = block_on(poll_once(task)) else { return true };
-        let material = far_material(&species, summer, &atlas, &mut images, &tables, near.buffer.clone(), *lighting);
+        let Some(Baked { species, summer, atlas, leans }) = block_on(poll_once(task)) else { return true };
+        let mut material = far_material(&species, summer, &atlas, &leans, &mut images, &tables, near.buffer.clone());
+        material.extension.lighting = *lighting;
         let frame = atlas.frame;
-        let reach_m = frame.centre.length() + frame.radius_m.hypot(frame.half_height_m);
+        // Wherever it leans.
+        let reach_m = frame.centre.length() + frame.radius_m + frame.half_height_m;
         let handle = match looks.get(id) {
             Some(look) => {
                 if let Some(mut worn) = materials.get_mut(&look.material) {
@@ -105,7 +115,10 @@ pub(super) fn bake_far_looks(
             }
             None => materials.add(material),
         };
-        looks.insert(*id, FarLook { material: handle, age: species.age, reach_m });
+        looks.insert(
+            *id,
+            FarLook { material: handle, age: species.age, reach_m, variants: species.variants, trees: atlas.trees },
+        );
         false
     });
 }

@@ -1,8 +1,8 @@
 //! The material of far trees.
 
-use super::mesh::ATTRIBUTE_FAR;
+use super::mesh::{ATTRIBUTE_FAR, MOST_TREES};
 use crate::{
-    lod::ViewAtlas,
+    lod::{Lean, ViewAtlas},
     shading::{define, image, lay_out},
     sway::{SeasonUniform, StandTables, TreeLighting},
     tree::Species,
@@ -39,10 +39,15 @@ pub struct FarExtension {
     views: ViewsUniform,
     #[uniform(107)]
     season: SeasonUniform,
+    /// Winds of slot A and B.
+    #[storage(105, read_only)]
+    wind_a: Handle<ShaderBuffer>,
+    #[storage(106, read_only)]
+    wind_b: Handle<ShaderBuffer>,
     /// Cells whose trees stand near.
     #[storage(108, read_only)]
     near: Handle<ShaderBuffer>,
-    lighting: TreeLighting,
+    pub(super) lighting: TreeLighting,
 }
 
 impl From<&FarExtension> for TreeLighting {
@@ -59,19 +64,22 @@ struct ViewsUniform {
     half_height_m: f32,
     across: f32,
     translucency: f32,
-    padding: f32,
+    trees: f32,
+    /// Gain and class of each tree's [`Lean`].
+    leans: [Vec4; MOST_TREES as usize],
 }
 
-/// The material of a species' far trees. `summer` is the colour of its leaves.
+/// The material of a species' far trees. `summer` is the colour of its leaves, `leans` are those of the atlas's trees.
 pub(super) fn far_material(
     species: &Species,
     summer: [f32; 3],
     atlas: &ViewAtlas,
+    leans: &[Lean],
     images: &mut Assets<Image>,
     tables: &StandTables,
     near: Handle<ShaderBuffer>,
-    lighting: TreeLighting,
 ) -> FarMaterial {
+    let [wind_a, wind_b] = &tables.winds;
     let mips = (atlas.colour.mips.len() - 1) as f32;
     let mut add = |texture| images.add(image(texture, ImageAddressMode::ClampToEdge, mips));
     FarMaterial {
@@ -94,11 +102,17 @@ pub(super) fn far_material(
                 half_height_m: atlas.frame.half_height_m,
                 across: atlas.across as f32,
                 translucency: species.foliage.translucency,
-                padding: 0.0,
+                trees: atlas.trees as f32,
+                leans: std::array::from_fn(|tree| {
+                    let Lean { gain, class } = leans.get(tree).copied().unwrap_or_default();
+                    Vec4::new(gain, class, 0.0, 0.0)
+                }),
             },
             season: SeasonUniform::new(&species.phenology, summer),
+            wind_a: wind_a.clone(),
+            wind_b: wind_b.clone(),
             near,
-            lighting,
+            lighting: TreeLighting::default(),
         },
     }
 }

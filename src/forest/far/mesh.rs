@@ -8,9 +8,12 @@ use bevy::{
 };
 use std::f32::consts::TAU;
 
-/// Corner, turn, size and tint of a tree: `code` of the shader, see [`FarTree::code`].
+/// Corner, turn, size, tint and looks of a tree: `code` of the shader, see [`FarTree::code`].
 pub(super) const ATTRIBUTE_FAR: MeshVertexAttribute =
     MeshVertexAttribute::new("FarTree", 0x4641_5254, VertexFormat::Uint32);
+
+/// Most trees of a species that there can be views of.
+pub(super) const MOST_TREES: u32 = 4;
 
 /// The greatest size that fits into a code.
 const GREATEST_SIZE: f32 = 4.0;
@@ -26,15 +29,17 @@ pub(super) struct FarTree {
     pub size: f32,
     /// A shade of its own, -1 to 1.
     pub tint: f32,
+    /// Whose views it wears, below [`MOST_TREES`].
+    pub tree: u32,
 }
 
 impl FarTree {
-    /// Lowest bits first: corner 2, turn 8, size 12, tint 8.
+    /// Lowest bits first: corner 2, turn 8, size 12, tint 8, tree 2.
     fn code(&self, corner: u32) -> u32 {
         let turn = (self.turn_rad.rem_euclid(TAU) / TAU * 256.0) as u32 & 255;
         let size = (self.size.clamp(0.0, GREATEST_SIZE) / GREATEST_SIZE * 4095.0).round() as u32;
         let tint = ((0.5 + 0.5 * self.tint.clamp(-1.0, 1.0)) * 255.0).round() as u32;
-        corner | turn << 2 | size << 10 | tint << 22
+        corner | turn << 2 | size << 10 | tint << 22 | self.tree % MOST_TREES << 30
     }
 }
 
@@ -67,19 +72,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_code_holds_turn_size_and_tint() {
-        let tree = FarTree { foot: Vec3::ZERO, turn_rad: 0.75 * TAU, size: 1.5, tint: -1.0 };
+    fn a_code_holds_turn_size_tint_and_tree() {
+        let tree = FarTree { foot: Vec3::ZERO, turn_rad: 0.75 * TAU, size: 1.5, tint: -1.0, tree: 3 };
         let code = tree.code(2);
-        assert_eq!((code & 3, code >> 2 & 255, code >> 22), (2, 192, 0));
+        assert_eq!((code & 3, code >> 2 & 255, code >> 22 & 255, code >> 30), (2, 192, 0, 3));
         let size = (code >> 10 & 4095) as f32 / 4095.0 * GREATEST_SIZE;
         assert!((size - 1.5).abs() < 1e-3);
         let odd = FarTree { turn_rad: -0.001, size: 99.0, tint: 7.0, ..tree }.code(3);
-        assert_eq!((odd & 3, odd >> 10 & 4095, odd >> 22), (3, 4095, 255));
+        assert_eq!((odd & 3, odd >> 10 & 4095, odd >> 22 & 255), (3, 4095, 255));
     }
 
     #[test]
     fn the_box_holds_every_tree_and_a_tree_costs_76_bytes() {
-        let tree = |x| FarTree { foot: Vec3::new(x, 5.0, 1.0), turn_rad: 0.0, size: 0.5, tint: 0.0 };
+        let tree = |x| FarTree { foot: Vec3::new(x, 5.0, 1.0), turn_rad: 0.0, size: 0.5, tint: 0.0, tree: 0 };
         let trees: Vec<FarTree> = (0..100_u8).map(|x| tree(f32::from(x))).collect();
         let (mesh, bounds) = block_mesh(&trees, 20.0);
         assert_eq!((bounds.min().x, bounds.max().x), (-10.0, 109.0));

@@ -6,7 +6,7 @@ use crate::{
     lod::{
         breeze,
         cylinder::sequence,
-        film::{Film, Sample},
+        film::{Alpha, Film, Sample},
         scene::Sight,
         spin::{Spin, around},
     },
@@ -149,10 +149,10 @@ fn images_do_not_bleed() {
         .chunks(TILE[0] * TILE[1])
         .map(|texels| Film { width: TILE[0], height: TILE[1], texels: texels.to_vec() })
         .collect();
-    let stack = stack.developed(TILE[0], TILE[1], 4);
+    let stack = stack.developed(TILE, 4, Alpha::Mask);
     assert_eq!(stack.colour.mips.len(), 3, "16 to 4 texels");
     for (image, film) in alone.into_iter().enumerate() {
-        let alone = film.developed(TILE[0], TILE[1], 4);
+        let alone = film.developed(TILE, 4, Alpha::Mask);
         for mip in 0..3 {
             assert_eq!(image_of(&stack.colour, image, IMAGES, mip), alone.colour.mips[mip], "{image} {mip}");
             assert_eq!(image_of(&stack.surface, image, IMAGES, mip), alone.surface.mips[mip], "{image} {mip}");

@@ -49,7 +49,7 @@ fn a_projection_sees_what_single_rays_see() {
     let (species, model, textures) = planted("birch", 0.5);
     let scene = Scene::new(&species, &model, &textures);
     const RAYS: usize = 64;
-    let mut projection = Projection::new(&scene, RAYS);
+    let mut projection = Projection::new(&scene, [RAYS, RAYS]);
     let (centre, half_m) = (Vec3::Y * (0.5 * model.height_m()), Vec3::splat(0.7 * model.height_m()));
     let (mut unlike, mut hits) = (0, 0);
     for to_eye in [Vec3::Z, Vec3::new(0.6, 0.64, -0.48), Vec3::Y] {
@@ -117,13 +117,11 @@ fn projected_share(
 fn a_tile_covers_as_much_as_the_tree_does() {
     let (species, model, textures) = planted("oak", 0.12);
     let scene = Scene::new(&species, &model, &textures);
-    let atlas = ViewAtlas::bake(&scene, &ViewSettings { across: 4, view_texels: 32, rays: 2 });
+    let atlas = ViewAtlas::bake(&[scene], &ViewSettings { across: 4, view_texels: 32, rays: 2 });
     for view in [UVec2::ZERO, UVec2::new(1, 2), UVec2::new(3, 1)] {
         let basis = ViewBasis::of_view(view, atlas.across);
         let expected = projected_share(&model, &textures, &atlas.frame, &basis, 64);
-        let [left, top] = (view * atlas.view_texels).to_array().map(|texel| texel as usize);
-        let share = drawn_share(&atlas.colour, 0, left, top, [32, 32]);
-        // Equal coverages pass the mask together: some texels of 1024.
+        let share = cover(&view_of(&atlas, 0, view, 0));
         assert!(expected > 0.1 && (share - expected).abs() < 0.01, "{view}: {share} for {expected}");
     }
 }

@@ -5,7 +5,7 @@
 
 #import bevy_windwood::beam::{BeamPose, BeamRow, Motion, NO_PARENT, TreeRow, bend, conjugate, rotate, tip_angle}
 #import bevy_windwood::wind::{
-    HEADER, Place, Slot, frame, place_of, response_at, slot_of, slot_time, slot_weight, to_world, wind_row,
+    frame, place_of, pressure, response_at, slot_of, slot_time, slot_weight, to_world,
 }
 
 // The tables have the same binding numbers in every shader of ours, see `compute.rs`.
@@ -17,33 +17,6 @@
 const WORKGROUP: u32 = 64u;
 // Deeper hierarchies are cut here rather than hang the graphics processor on a broken table.
 const DEEPEST: u32 = 64u;
-
-// ---- the load on a beam ----------------------------------------------------------------------------------------------
-
-// The texel of the hemi-octahedral map nearest to a unit direction in wind coordinates: see `direction_map.rs`.
-fn direction_texel(size: u32, direction: vec3<f32>) -> u32 {
-    let upward = select(direction, -direction, direction.y < 0.0);
-    let flat = upward.xz / (abs(upward.x) + abs(upward.y) + abs(upward.z));
-    let square = vec2(flat.x + flat.y, flat.x - flat.y);
-    let place = vec2<u32>((square * 0.5 + 0.5) * f32(size - 1u) + 0.5);
-    return min(place.y, size - 1u) * size + min(place.x, size - 1u);
-}
-
-// The static-equivalent wind pressure on a beam of that direction and class, m^2/s^2, in world axes.
-fn pressure(slot: u32, wind: Slot, place: Place, direction: vec3<f32>, class_coordinate: f32) -> vec3<f32> {
-    let seen = vec3(dot(direction, wind.along), direction.y, dot(direction, wind.across));
-    let texel = HEADER + 4u * direction_texel(wind.map_size, seen);
-    let c0 = wind_row(slot, texel);
-    let c1 = wind_row(slot, texel + 1u);
-    let c2 = wind_row(slot, texel + 2u);
-    let c3 = wind_row(slot, texel + 3u);
-    let frequency_class = u32(clamp(class_coordinate + 0.5, 0.0, f32(wind.classes - 1u)));
-    let r = response_at(slot, wind, frequency_class, place);
-    let q = vec3(c0.w, c1.w, c2.w) + c0.xyz * r.x + c1.xyz * r.y + c2.xyz * r.z + c3.xyz * r.w;
-    return to_world(wind, q - seen * dot(q, seen));
-}
-
-// ---- the two steps --------------------------------------------------------------------------------------------------
 
 // What a thread works on: a tree, one of its beams (the one after the last stands for the wind), now or one frame ago.
 struct Job {

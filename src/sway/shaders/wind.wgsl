@@ -82,6 +82,29 @@ fn to_world(wind: Slot, v: vec3<f32>) -> vec3<f32> {
     return wind.along * v.x + vec3(0.0, v.y, 0.0) + wind.across * v.z;
 }
 
+// The texel of the hemi-octahedral map nearest to a unit direction in wind coordinates: see `direction_map.rs`.
+fn direction_texel(size: u32, direction: vec3<f32>) -> u32 {
+    let upward = select(direction, -direction, direction.y < 0.0);
+    let flat = upward.xz / (abs(upward.x) + abs(upward.y) + abs(upward.z));
+    let square = vec2(flat.x + flat.y, flat.x - flat.y);
+    let place = vec2<u32>((square * 0.5 + 0.5) * f32(size - 1u) + 0.5);
+    return min(place.y, size - 1u) * size + min(place.x, size - 1u);
+}
+
+// The static-equivalent wind pressure on a beam of that direction and class, m^2/s^2, in world axes.
+fn pressure(slot: u32, wind: Slot, place: Place, direction: vec3<f32>, class_coordinate: f32) -> vec3<f32> {
+    let seen = vec3(dot(direction, wind.along), direction.y, dot(direction, wind.across));
+    let texel = HEADER + 4u * direction_texel(wind.map_size, seen);
+    let c0 = wind_row(slot, texel);
+    let c1 = wind_row(slot, texel + 1u);
+    let c2 = wind_row(slot, texel + 2u);
+    let c3 = wind_row(slot, texel + 3u);
+    let frequency_class = u32(clamp(class_coordinate + 0.5, 0.0, f32(wind.classes - 1u)));
+    let r = response_at(slot, wind, frequency_class, place);
+    let q = vec3(c0.w, c1.w, c2.w) + c0.xyz * r.x + c1.xyz * r.y + c2.xyz * r.z + c3.xyz * r.w;
+    return to_world(wind, q - seen * dot(q, seen));
+}
+
 fn slot_weight(slot: u32, frames_ago: u32) -> f32 {
     let blend = select(frame.blend.x, frame.blend.y, frames_ago == 1u);
     return select(1.0 - blend, blend, slot == 1u);

@@ -10,7 +10,10 @@ struct Views {
     // Views each way.
     across: f32,
     translucency: f32,
-    padding: f32,
+    // Trees whose views there are, one below another.
+    trees: f32,
+    // Gain and class of each tree's lean: `lod/lean.rs`.
+    leans: array<vec4<f32>, 4>,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(100) var colours: texture_2d<f32>;
@@ -55,29 +58,9 @@ fn view_direction(place: vec2<f32>) -> vec3<f32> {
     return normalize(vec3(x, 1.0 - abs(x) - abs(z), z));
 }
 
-fn normal_of(place: vec2<f32>) -> vec3<f32> {
-    let p = 2.0 * place - 1.0;
-    let y = 1.0 - abs(p.x) - abs(p.y);
-    let folded = (1.0 - abs(p.yx)) * select(vec2(-1.0), vec2(1.0), p >= vec2(0.0));
-    let flat = select(p, folded, y < 0.0);
-    return normalize(vec3(flat.x, y, flat.y));
-}
-
-// Where a tree-local point is seen in the atlas, on the tile of a view.
-fn atlas_place(view: vec2<f32>, point: vec3<f32>) -> vec2<f32> {
-    let basis = basis_towards(above_horizon(view_direction(view / (views.across - 1.0))));
-    let from_centre = point - views.centre;
-    let seen = vec2(dot(from_centre, basis.right), -dot(from_centre, basis.up)) / half_m(basis);
-    return (view + clamp(0.5 + 0.5 * seen, vec2(0.0), vec2(1.0))) / views.across;
-}
-
-// What is seen at a point of a card.
-struct Seen {
-    colour: vec3<f32>,
-    alpha: f32,
-    normal: vec3<f32>,
-    // Share of leaf, 0 for wood.
-    leaf: f32,
+// A way across a tile, of a way past the tree.
+fn way_on_tile(basis: Basis, way: vec3<f32>) -> vec2<f32> {
+    return 0.5 * vec2(dot(way, basis.right), -dot(way, basis.up)) / half_m(basis);
 }
 
 struct Three {
@@ -95,31 +78,79 @@ fn views_around(place: vec2<f32>) -> Three {
     let beside = select(vec2(0.0, 1.0), vec2(1.0, 0.0), within.x > within.y);
     let more = max(within.x, within.y);
     let less = min(within.x, within.y);
-    return Three(low, low + beside, low + 1.0, vec3(1.0 - more, more - less, less));
+    // The nearest view is drawn more often than its share: of fewer pictures at once, thin stems are less broken.
+    let shares = vec3(1.0 - more, more - less, less);
+    let weights = shares * shares;
+    return Three(low, low + beside, low + 1.0, weights / (weights.x + weights.y + weights.z));
 }
 
-fn seen_at(place: vec2<f32>, point: vec3<f32>) -> Seen {
+fn random(cell: vec2<i32>) -> f32 {
+    var bits = bitcast<u32>(cell.x) * 0x9e3779b1u ^ bitcast<u32>(cell.y) * 0x85ebca77u;
+    bits = (bits ^ (bits >> 15u)) * 0x2c1b3c6du;
+    bits = (bits ^ (bits >> 12u)) * 0x297a2d39u;
+    return f32((bits ^ (bits >> 15u)) >> 8u) / 16777216.0;
+}
+
+// A lot between 0 and 1, all equally likely, for each place on a card about as large as a pixel. It stays where it is on the
+// tree: lots of the next finer and the next coarser grid, with sides of powers of two, are mixed, so that none jumps when
+// the tree comes nearer. The mean of two lots is no longer equally likely everywhere, which its distribution makes up for.
+fn lot(place_m: vec2<f32>, pixel_m: f32) -> f32 {
+    let scale = log2(max(pixel_m, 1e-4));
+    let fine = random(vec2<i32>(floor(place_m * exp2(-floor(scale)))));
+    let coarse = random(vec2<i32>(floor(place_m * exp2(-floor(scale) - 1.0))));
+    let share = fract(scale);
+    let mixed = mix(fine, coarse, share);
+    let less = min(share, 1.0 - share);
+    let more = 1.0 - less;
+    let rim = min(mixed, 1.0 - mixed);
+    let below = select((rim - 0.5 * less) / more, rim * rim / max(2.0 * less * more, 1e-6), rim < less);
+    return select(below, 1.0 - below, mixed > 0.5);
+}
+
+// What is seen at a point of a card.
+struct Seen {
+    is_there: bool,
+    colour: vec3<f32>,
+    // The mean of unit normals: the shorter, the more they differ.
+    normal: vec3<f32>,
+    // Share of leaf, 0 for wood.
+    leaf: f32,
+}
+
+// `point` lies on the card that faces the direction at `place` on the chart.
+fn seen_at(tree: f32, place: vec2<f32>, point: vec3<f32>) -> Seen {
+    let from_centre = point - views.centre;
+    let along_x = dpdx(point);
+    let along_y = dpdy(point);
+    let facing = basis_towards(view_direction(place));
+    let on_card = vec2(dot(from_centre, facing.right), dot(from_centre, facing.up));
+    let drawn = lot(on_card, max(length(along_x), length(along_y)));
+    // The lot picks a view, and what of it lies within the view's share is a lot again.
     let three = views_around(place);
-    let uv_a = atlas_place(three.a, point);
-    let uv_b = atlas_place(three.b, point);
-    let uv_c = atlas_place(three.c, point);
-    let a = textureSample(colours, views_sampler, uv_a);
-    let b = textureSample(colours, views_sampler, uv_b);
-    let c = textureSample(colours, views_sampler, uv_c);
-    let surface_a = textureSample(surfaces, views_sampler, uv_a);
-    let surface_b = textureSample(surfaces, views_sampler, uv_b);
-    let surface_c = textureSample(surfaces, views_sampler, uv_c);
-    let alpha = dot(three.weights, vec3(a.a, b.a, c.a));
-    // What a view does not see has no say in the colour.
-    let w = three.weights * (vec3(a.a, b.a, c.a) + 1e-3);
-    let share = w / (w.x + w.y + w.z);
-    let normal = share.x * normal_of(surface_a.xy) + share.y * normal_of(surface_b.xy) + share.z * normal_of(surface_c.xy);
-    return Seen(
-        share.x * a.rgb + share.y * b.rgb + share.z * c.rgb,
-        alpha,
-        normalize(normal + vec3(0.0, 1e-4, 0.0)),
-        dot(share, vec3(surface_a.a, surface_b.a, surface_c.a)),
-    );
+    let first = three.weights.x;
+    let second = first + three.weights.y;
+    var view = three.c;
+    var start = second;
+    if drawn < first {
+        view = three.a;
+        start = 0.0;
+    } else if drawn < second {
+        view = three.b;
+        start = first;
+    }
+    let weight = select(select(three.weights.z, three.weights.y, drawn < second), first, drawn < first);
+    let threshold = (drawn - start) / max(weight, 1e-6);
+
+    let basis = basis_towards(above_horizon(view_direction(view / (views.across - 1.0))));
+    let tiles = views.across * vec2(1.0, views.trees);
+    let on_tile = clamp(0.5 + way_on_tile(basis, from_centre), vec2(0.0), vec2(1.0));
+    let uv = (view + vec2(0.0, views.across * round(tree)) + on_tile) / tiles;
+    // Neighbours may have drawn other views: the derivatives are those on this one.
+    let uv_x = way_on_tile(basis, along_x) / tiles;
+    let uv_y = way_on_tile(basis, along_y) / tiles;
+    let colour = textureSampleGrad(colours, views_sampler, uv, uv_x, uv_y);
+    let surface = textureSampleGrad(surfaces, views_sampler, uv, uv_x, uv_y);
+    return Seen(colour.a > threshold, colour.rgb, 2.0 * surface.rgb - 1.0, surface.a);
 }
 
 // When in the year the leaves at a place of the crown come and go, 0..1 among all.

@@ -10,13 +10,13 @@
 @fragment
 fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
     visibility_range_dither(in.position, in.visibility_range_dither);
-    let seen = far::seen_at(in.uv, in.color.xyz);
+    let seen = far::seen_at(in.color.a, in.uv, in.color.xyz);
     let tint = in.uv_b.y;
     // Leaves come and go, and turn, at a place of the crown's own time.
     let rank = far::leaf_rank(in.color.xyz);
     let state = season::leaves(frame.year, tint - 0.5, rank);
     let is_leaf = seen.leaf > 0.3;
-    if seen.alpha < 0.5 || (is_leaf && rank > state.size) {
+    if !seen.is_there || (is_leaf && rank > state.size) {
         discard;
     }
     var colour = seen.colour;
@@ -26,11 +26,13 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
         colour *= vec3(1.0 + 0.2 * own, 1.0 + 0.06 * own, 1.0 - 0.25 * own);
     }
     var pbr_input = pbr_input_from_standard_material(in, is_front);
-    let normal = far::turned(seen.normal, in.uv_b.x);
+    let agreement = min(length(seen.normal), 1.0);
+    let normal = far::turned(normalize(seen.normal + vec3(0.0, 1e-4, 0.0)), in.uv_b.x);
     pbr_input.N = normal;
     pbr_input.world_normal = normal;
     pbr_input.material.base_color = vec4(colour, 1.0);
-    pbr_input.material.diffuse_transmission = far::views.translucency * seen.leaf;
+    // What faces all ways is lit from behind as much as from before.
+    pbr_input.material.diffuse_transmission = mix(0.5, far::views.translucency * seen.leaf, agreement);
     var out: FragmentOutput;
     out.color = light::lit(pbr_input);
     out.color = main_pass_post_lighting_processing(pbr_input, out.color);

@@ -9,10 +9,10 @@
 
 fn cut_out(in: prepass_io::VertexOutput) {
     visibility_range_dither(in.position, in.visibility_range_dither);
-    let seen = far::seen_at(in.uv, in.color.xyz);
+    let seen = far::seen_at(in.color.a, in.uv, in.color.xyz);
     let rank = far::leaf_rank(in.color.xyz);
     let state = season::leaves(frame.year, in.uv_b.y - 0.5, rank);
-    if seen.alpha < 0.5 || (seen.leaf > 0.3 && rank > state.size) {
+    if !seen.is_there || (seen.leaf > 0.3 && rank > state.size) {
         discard;
     }
 }
