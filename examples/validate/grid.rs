@@ -3,7 +3,7 @@
 
 use crate::{capture, report::Report};
 use bevy::{
-    diagnostic::{DiagnosticPath, DiagnosticsStore},
+    diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore},
     prelude::*,
     render::{
         diagnostic::RenderDiagnosticsPlugin,
@@ -92,7 +92,7 @@ fn measure(trees: u32, frames: u32, picture: &Path) -> Result<[f64; 5], String> 
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / 60.0)));
     let [frame_ms, systems_ms] = draw(&mut app, frames)?;
     let path = DiagnosticPath::new(format!("render/{POSES_SPAN}/elapsed_gpu"));
-    let poses_ms = app.world().resource::<DiagnosticsStore>().get(&path).and_then(|diagnostic| diagnostic.average());
+    let poses_ms = app.world().resource::<DiagnosticsStore>().get(&path).and_then(Diagnostic::average);
     capture::save(&capture::capture(&mut app, &canvas, SIZE)?, picture)?;
     app.insert_resource(TreeLighting::SunOnly);
     let [sun_only_ms, _] = draw(&mut app, frames)?;

@@ -189,7 +189,7 @@ mod tests {
     fn nothing_taken_away_is_the_tree_itself() {
         let model = oak();
         let all = reduced(&model, 0.0, 1.0);
-        assert_eq!((all.wood, all.leaves), (model.wood, model.leaves));
+        assert_eq!((all.wood, all.leaves), (WoodVertices::clone(&model.wood), LeafVertices::clone(&model.leaves)));
     }
 
     #[test]

@@ -39,7 +39,7 @@ impl FarTree {
         let turn = (self.turn_rad.rem_euclid(TAU) / TAU * 256.0) as u32 & 255;
         let size = (self.size.clamp(0.0, GREATEST_SIZE) / GREATEST_SIZE * 4095.0).round() as u32;
         let tint = ((0.5 + 0.5 * self.tint.clamp(-1.0, 1.0)) * 255.0).round() as u32;
-        corner | turn << 2 | size << 10 | tint << 22 | self.tree % MOST_TREES << 30
+        corner | turn << 2 | size << 10 | tint << 22 | (self.tree % MOST_TREES) << 30
     }
 }
 

@@ -12,6 +12,7 @@ use crate::{
     },
 };
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
+use std::sync::Arc;
 
 const FIELD: [usize; 2] = [256, 128];
 
@@ -100,7 +101,7 @@ fn moved(model: &TreeModel, poses: &[BeamPose]) -> TreeModel {
             bound_to = parent.map(|parent| (parent as usize, model.skeleton.beams[beam].attach));
         }
     };
-    let (wood, leaves) = (&mut moved.wood, &mut moved.leaves);
+    let (wood, leaves) = (Arc::make_mut(&mut moved.wood), Arc::make_mut(&mut moved.leaves));
     model.wood.sway.iter().zip(wood.positions.iter_mut().zip(&mut wood.normals)).for_each(carry);
     model.leaves.sway.iter().zip(leaves.positions.iter_mut().zip(&mut leaves.normals)).for_each(carry);
     moved
