@@ -9,8 +9,8 @@
 //!   cylindrical projection of the tree, ray-traced by a camera that turns around it ([`scene`]). It oscillates as the
 //!   trunk does, and its texture is a sequence of images of the crown's sway.
 //! - [`plain`]: the paper's *low* level, four plain polygons that stand still.
-//! - [`views`]: an atlas of parallel projections from all over the upper hemisphere, three of which are blended towards
-//!   any eye.
+//! - [`views`]: an atlas of parallel projections from all over the upper hemisphere, three of which are mixed towards any
+//!   eye; and how far such pictures lean in the wind ([`Lean`]).
 //!
 //! [`levels`] makes them all, in about a tenth of a second: not on the frame.
 

@@ -3,9 +3,9 @@
 //!
 //! A view is a parallel projection of the upright cylinder around the tree: `radius_m` to each side, and
 //! `half_height_m cos e + radius_m sin e` up and down where the eye stands at the elevation `e`. Slender trees so fill
-//! their tiles as well as round ones do, and tiles are about as slender as the tree: so texels are about square, and what
-//! is seen of them has as much detail one way as the other. Views lie on a grid over the unfolded hemisphere ([`view_place`]), so that three
-//! of them surround any direction ([`views_towards`]).
+//! their tiles as well as round ones do. Tiles are about as slender as the tree: so texels are about square, and a mip has
+//! as much detail one way as the other. Views lie on a grid over the unfolded hemisphere ([`view_place`]), so that three of
+//! them surround any direction ([`views_towards`]).
 //!
 //! What a shader does, its eye in the direction `to_eye` (tree-local, from [`ViewFrame::centre`]) and `point` any place on
 //! a rectangle that faces the eye: it draws lots for one of the three views, by weight, and for whether there is a tree, by

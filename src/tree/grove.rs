@@ -241,7 +241,7 @@ mod tests {
     #[test]
     fn a_tree_of_a_seed_is_the_variant_that_is_foretold() {
         let mut app = App::new();
-        app.add_plugins((bevy::asset::AssetPlugin::default(), bevy::app::TaskPoolPlugin::default()));
+        app.add_plugins((AssetPlugin::default(), TaskPoolPlugin::default()));
         app.init_asset::<Species>().init_asset::<TreeModel>().init_resource::<Grove>().add_message::<SpeciesBaked>();
         app.add_systems(Update, (adopt_species, receive_models, grow_trees).chain());
         let young = Species { variants: 3, ..Species::default() };

@@ -1,5 +1,6 @@
 //! Trees too far to be entities of their own: blocks of cells, each drawn as one mesh a species, in which a tree is a card
-//! that faces the eye and wears the views of its species ([`ViewAtlas`](crate::lod::ViewAtlas)).
+//! that faces the eye, wears the views of its variant of the species ([`ViewAtlas`](crate::lod::ViewAtlas)) and leans in the
+//! wind ([`Lean`](crate::lod::Lean)).
 //!
 //! - `looks` has each species' views made in the background.
 //! - `blocks` plants blocks about the viewers, and makes their meshes (`mesh`): some 76 bytes a tree.
