@@ -6,8 +6,7 @@
 
 use crate::capture;
 use bevy::{
-    camera::visibility::NoFrustumCulling, core_pipeline::prepass::DepthPrepass, light::ShadowFilteringMethod,
-    prelude::*,
+    camera::visibility::NoFrustumCulling, light::ShadowFilteringMethod, prelude::*,
 };
 use bevy_windwood::{
     forest::ForestCulling,
@@ -142,7 +141,8 @@ pub fn camera(target: Option<&Handle<Image>>) -> impl Bundle + use<> {
     let target = target.map_or_else(bevy::camera::RenderTarget::default, |image| {
         bevy::camera::RenderTarget::Image(image.clone().into())
     });
-    (Camera3d::default(), Msaa::Off, DepthPrepass, ShadowFilteringMethod::Hardware2x2, target, lens)
+    // No depth prepass: on software Vulkan trees under the sun alone cost more as vertices than as pixels.
+    (Camera3d::default(), Msaa::Off, ShadowFilteringMethod::Hardware2x2, target, lens)
 }
 
 /// Where the walker is at a time, s.

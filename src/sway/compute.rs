@@ -24,8 +24,8 @@ use bevy::{
     shader::ShaderDefVal,
 };
 
-/// Threads of a workgroup; `WORKGROUP` of the shader.
-const WORKGROUP: u32 = 64;
+/// Workgroups in the first dimension, of which a device may allow but 65535; `ACROSS` of the shader.
+const ACROSS: u32 = 256;
 
 /// The name of the poses among Bevy's render diagnostics.
 pub const POSES_SPAN: &str = "tree_poses";
@@ -35,12 +35,10 @@ const POSE_SHADER: &str = "embedded://bevy_windwood/sway/shaders/pose.wgsl";
 /// What is to be posed this frame.
 #[derive(Resource, ExtractResource, Clone)]
 pub(super) struct PoseJob {
-    /// Slot A, slot B, beams, trees, frame, poses.
-    pub buffers: [Handle<ShaderBuffer>; 6],
-    /// Rows of the table of trees.
-    pub trees: u32,
-    /// Beams of the largest model.
-    pub most_beams: u32,
+    /// Slot A, slot B, beams, trees, chunks, frame, poses.
+    pub buffers: [Handle<ShaderBuffer>; 7],
+    /// Chunks of beams that are posed.
+    pub chunks: u32,
     /// Whether the poses of the frame before have to be found as well, because they are not those that were last found.
     pub both: bool,
 }
@@ -54,7 +52,7 @@ pub(super) fn plugin(app: &mut App) {
         .add_systems(RenderGraph, pose_trees.in_set(RenderGraphSystems::Render).before(camera_driver));
 }
 
-/// Storage buffers that a stage needs: six to pose; to draw, our four and Bevy's own for meshes, instances and skins.
+/// Storage buffers that a stage needs: seven to pose; to draw, our four and Bevy's own for meshes, instances and skins.
 pub(super) const STORAGE_BUFFERS_NEEDED: u32 = 8;
 
 /// Where there are too few buffers, trees stand still and even a pipeline's layout would be an error.
@@ -83,6 +81,7 @@ fn queue_pipelines(mut commands: Commands, assets: Res<AssetServer>, cache: Res<
                 (101, table()),
                 (102, table()),
                 (103, table()),
+                (104, table()),
                 (105, table()),
                 (106, table()),
             ),
@@ -115,14 +114,22 @@ fn bind_tables(
     commands.remove_resource::<PoseBindings>();
     let (Some(job), Some(pipelines)) = (job, pipelines) else { return };
     let bound = job.buffers.each_ref().map(|handle| buffers.get(handle));
-    let [Some(a), Some(b), Some(beams), Some(trees), Some(frame), Some(poses)] = bound else { return };
-    let entries = [a, b, beams, trees, frame, poses].map(|buffer| buffer.buffer.as_entire_buffer_binding());
-    let [a, b, beams, trees, frame, poses] = entries;
+    let [Some(a), Some(b), Some(beams), Some(trees), Some(chunks), Some(frame), Some(poses)] = bound else { return };
+    let entries = [a, b, beams, trees, chunks, frame, poses].map(|buffer| buffer.buffer.as_entire_buffer_binding());
+    let [a, b, beams, trees, chunks, frame, poses] = entries;
     let layout = cache.get_bind_group_layout(&pipelines.layout);
     let group = device.create_bind_group(
         "tree poses",
         &layout,
-        &BindGroupEntries::with_indices(((100, poses), (101, beams), (102, trees), (103, frame), (105, a), (106, b))),
+        &BindGroupEntries::with_indices((
+            (100, poses),
+            (101, beams),
+            (102, trees),
+            (103, frame),
+            (104, chunks),
+            (105, a),
+            (106, b),
+        )),
     );
     commands.insert_resource(PoseBindings(group));
 }
@@ -137,7 +144,7 @@ fn pose_trees(
     let (Some(job), Some(bindings), Some(pipelines)) = (job, bindings, pipelines) else { return };
     let ready = |id| cache.get_compute_pipeline(id);
     let (Some(find_tip_angles), Some(ride)) = (ready(pipelines.find_tip_angles), ready(pipelines.ride)) else { return };
-    if job.trees == 0 {
+    if job.chunks == 0 {
         return;
     }
     let recorder = context.diagnostic_recorder();
@@ -146,11 +153,10 @@ fn pose_trees(
     let mut pass = context.command_encoder().begin_compute_pass(&descriptor);
     let span = recorder.pass_span(&mut pass, POSES_SPAN);
     pass.set_bind_group(0, &bindings.0, &[]);
-    // One thread more than there are beams looks up the wind at the tree.
-    let groups = (job.most_beams + 1).div_ceil(WORKGROUP);
+    let (across, down) = (job.chunks.min(ACROSS), job.chunks.div_ceil(ACROSS));
     for pipeline in [find_tip_angles, ride] {
         pass.set_pipeline(pipeline);
-        pass.dispatch_workgroups(groups, job.trees, if job.both { 2 } else { 1 });
+        pass.dispatch_workgroups(across, down, if job.both { 2 } else { 1 });
     }
     span.end(&mut pass);
 }

@@ -19,7 +19,7 @@ pub struct DrawPath {
     pub sways: bool,
     /// Whether the graphics processor culls by itself, so that the processor need not.
     pub culls_on_gpu: bool,
-    /// Beams that can be posed at once, over all trees; trees beyond that stand still.
+    /// Beams that can be posed at once, over all trees that are seen; trees beyond that stand still.
     pub pose_limit: u32,
     /// Largest table that a shader can read, bytes.
     pub table_limit_bytes: u64,
@@ -86,7 +86,6 @@ pub(super) fn dress_trees(
     path: Res<DrawPath>,
     sight: Res<Sight>,
     mut stand: ResMut<Stand>,
-    mut warned: Local<bool>,
     mut dressed: MessageReader<SpeciesDressed>,
     places: TransformHelper,
     trees: Query<(Entity, &Tree, &Grown, Option<&Children>, Has<CardBehind>)>,
@@ -99,11 +98,7 @@ pub(super) fn dress_trees(
         for old in children.into_iter().flatten().filter(|child| draws.contains(**child)) {
             commands.entity(*old).despawn();
         }
-        let standing = if path.sways { stand.admit(grown.model.id(), path.pose_limit) } else { None };
-        if path.sways && standing.is_none() && !*warned {
-            warn!("windwood: this device can pose {} beams at once; trees beyond that stand still", path.pose_limit);
-            *warned = true;
-        }
+        let standing = if path.sways { stand.admit(grown.model.id()) } else { None };
         let (scale, _, place) =
             places.compute_global_transform(entity).unwrap_or_default().to_scale_rotation_translation();
         let mut worn = Worn {

@@ -5,13 +5,13 @@ use super::{
     compute::{PoseJob, STORAGE_BUFFERS_NEEDED},
     detail::{CardRange, LevelOfDetail, Sight, look_about},
     draw::{DrawPath, choose_levels, dress_trees},
-    lighting::{TreeLighting, relight},
+    lighting::{TreeLighting, TreeLights, find_lights, relight},
     looks::{SpeciesDressed, Tailoring, Wardrobe, finish_tailoring, start_tailoring},
-    material::SwayMaterial,
+    material::{SwayExtension, SwayMaterial},
     mend,
     rouse::{Roused, recall_meshes, rouse_meshes},
     rows::POSE_BYTES,
-    stand::{Stand, dismiss_tree, place_trees, wake_trees},
+    stand::{Stand, dismiss_tree, place_trees, see_trees},
     upload::{StandBuffers, StandTables, upload_frame, upload_winds},
 };
 use crate::{schedule::WindwoodSystems, timing::timed, tree::receive_models, viewpoint::give_cameras_viewpoints};
@@ -43,6 +43,7 @@ impl Plugin for SwayDrawPlugin {
         load_shader_library!(app, "shaders/level.wgsl");
         load_shader_library!(app, "shaders/light.wgsl");
         load_shader_library!(app, "shaders/season.wgsl");
+        load_shader_library!(app, "shaders/surface.wgsl");
         load_shader_library!(app, "shaders/written.wgsl");
         embedded_asset!(app, "shaders/foliage.wgsl");
         embedded_asset!(app, "shaders/mask.wgsl");
@@ -59,6 +60,7 @@ impl Plugin for SwayDrawPlugin {
             .init_resource::<Sight>()
             .insert_resource(CardRange { from_m: None })
             .init_resource::<TreeLighting>()
+            .init_resource::<TreeLights>()
             .register_type::<LevelOfDetail>()
             .register_type::<TreeLighting>()
             .init_resource::<Tailoring>()
@@ -79,8 +81,9 @@ impl Plugin for SwayDrawPlugin {
         let dress = timed!(app, look_about, start_tailoring, finish_tailoring, choose_levels, dress_trees);
         let dress =
             dress.chain().after(receive_models).in_set(WindwoodSystems::Grow).run_if(resource_exists::<DrawPath>);
-        let upload = timed!(app, upload_winds, place_trees, wake_trees, upload_frame);
-        app.add_systems(Update, (dress, relight.run_if(resource_changed::<TreeLighting>))).add_systems(
+        let upload = timed!(app, upload_winds, place_trees, see_trees, upload_frame);
+        let light = (find_lights, relight::<SwayExtension>.run_if(resource_changed::<TreeLights>)).chain();
+        app.add_systems(Update, (dress, light)).add_systems(
             PostUpdate,
             upload.chain().after(VisibilitySystems::VisibilityPropagate).in_set(WindwoodSystems::Upload),
         );
@@ -105,6 +108,6 @@ impl Plugin for SwayDrawPlugin {
         // Poses have two halves, and half as many again are kept ready.
         let largest = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size);
         let pose_limit = u32::try_from(largest / (3 * POSE_BYTES as u64)).unwrap_or(u32::MAX);
-        app.insert_resource(DrawPath { sways, culls_on_gpu, pose_limit, table_limit_bytes: largest });
+        app.insert_resource(Stand::new(pose_limit)).insert_resource(DrawPath { sways, culls_on_gpu, pose_limit, table_limit_bytes: largest });
     }
 }

@@ -1,6 +1,6 @@
 //! The material that poses trees in the vertex shader.
 
-use super::{active::FLUTTER_PERIOD_S, lighting::TreeLighting};
+use super::{active::FLUTTER_PERIOD_S, lighting::TreeLights};
 use crate::{
     dynamics::leaf::LeafResponse,
     shading::{define, lay_out},
@@ -32,7 +32,7 @@ pub type SwayMaterial = ExtendedMaterial<StandardMaterial, SwayExtension>;
 /// The tables that the vertex shader reads. They are shared and written in place, so that the material itself never
 /// changes: a changed material would re-extract every tree that wears it.
 #[derive(Asset, AsBindGroup, Reflect, Clone, Debug)]
-#[bind_group_data(TreeLighting)]
+#[bind_group_data(TreeLights)]
 pub struct SwayExtension {
     /// The poses of all beams of all trees.
     #[storage(100, read_only)]
@@ -53,12 +53,12 @@ pub struct SwayExtension {
     #[uniform(107)]
     pub season: SeasonUniform,
     /// By what it is lit.
-    pub lighting: TreeLighting,
+    pub lights: TreeLights,
 }
 
-impl From<&SwayExtension> for TreeLighting {
+impl From<&SwayExtension> for TreeLights {
     fn from(extension: &SwayExtension) -> Self {
-        extension.lighting
+        extension.lights
     }
 }
 

@@ -60,6 +60,7 @@ pub use {
 pub(crate) use {
     detail::CardRange,
     draw::{CardBehind, TreesByLevel},
+    lighting::{LitAsTrees, TreeLights, relight},
     material::SeasonUniform,
     rouse::CulledOnGpu,
 };

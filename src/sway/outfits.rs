@@ -3,7 +3,7 @@
 use super::{
     cut::Cloth,
     draw::DrawPath,
-    lighting::TreeLighting,
+    lighting::TreeLights,
     material::{LeafUniform, SeasonUniform, SwayExtension, SwayMaterial},
     upload::StandBuffers,
 };
@@ -45,7 +45,7 @@ pub(super) struct Dyer<'w> {
     still: ResMut<'w, Assets<StandardMaterial>>,
     shared: Res<'w, StandBuffers>,
     path: Res<'w, DrawPath>,
-    lighting: Res<'w, TreeLighting>,
+    lights: Res<'w, TreeLights>,
 }
 
 /// Coarsest mip of masked foliage that is used: beyond it a spray is a few texels, between which no alpha passes the mask,
@@ -62,7 +62,7 @@ impl Dyer<'_> {
             frame: self.shared.frame.clone(),
             leaf: LeafUniform::new(&species.foliage.response, matches!(species.growth, Growth::Gardner(_))),
             season: SeasonUniform::new(&species.phenology, textures.foliage_colour()),
-            lighting: *self.lighting,
+            lights: *self.lights,
         };
         let bark = self.bark(&textures.bark);
         let fading_bark = StandardMaterial { alpha_mode: AlphaMode::Mask(0.5), ..bark.clone() };

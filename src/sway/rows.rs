@@ -48,7 +48,8 @@ pub(super) struct FrameRow {
     pub poses_before: u32,
     /// 1 once there is a wind, 0 before.
     pub ready: u32,
-    pub tree_count: u32,
+    /// Chunks of beams that are posed, see [`pose_chunk`].
+    pub chunk_count: u32,
     /// Time of the year, 0..1.
     pub year: f32,
     /// Where levels 0, 1 and 2 of a tree end, per metre of its height.
@@ -60,7 +61,7 @@ pub(super) struct FrameRow {
     pub padding: [f32; 2],
 }
 
-/// `TreeRow` of the shader: one tree. Without beams it is a row that nobody has.
+/// `TreeRow` of the shader: one tree. Without beams it is a row that nobody has, or a tree that is not posed: at rest.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(super) struct TreeRow {
@@ -86,6 +87,14 @@ impl TreeRow {
 
 /// Size of a `BeamPose` of the shader: three vec4.
 pub(super) const POSE_BYTES: usize = 48;
+
+/// Beams that a workgroup poses; `WORKGROUP` of the shader.
+pub(super) const CHUNK: u32 = 64;
+
+/// The beams from `64 chunk` on of a row's tree, as the shader reads them: the row in the low half.
+pub(super) fn pose_chunk(row: u32, chunk: u32) -> u32 {
+    row | chunk << 16
+}
 
 /// Rows of `vec4` before the direction map in a slot; `HEADER` of the shader.
 const HEADER: usize = 4;

@@ -1,14 +1,16 @@
 //! The trees that the graphics processor poses: which rows of the shared tables are whose.
 //!
-//! A stand of trees has one table of beams (those of each model once), one of trees, and one of poses (a range for each
-//! tree). Rows are written when a tree comes, moves or goes; nothing here runs for a tree that stands.
+//! A stand of trees has one table of beams (those of each model once), one of trees, and one of poses: a range for each tree
+//! that is seen, for as long as it is. Rows are written when a tree comes, moves, is seen, is seen no more, or goes; nothing
+//! here runs for a tree that stands.
 
 use super::{
-    draw::Worn,
-    rows::{BeamRow, POSE_BYTES, TreeRow},
+    draw::{DrawPath, Worn},
+    rows::{BeamRow, CHUNK, POSE_BYTES, TreeRow, pose_chunk},
 };
 use crate::tree::{Tree, TreeModel};
 use bevy::{platform::collections::HashMap, prelude::*};
+use offset_allocator::{Allocation, Allocator};
 
 /// A tree's row in the stand. Taking the component away, or the entity, gives the row back.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,19 +20,33 @@ pub(super) struct Standing {
 }
 
 /// The tables of the stand, as they are on the processor.
-#[derive(Resource, Default)]
+#[derive(Resource)]
 pub(super) struct Stand {
     rows: Vec<TreeRow>,
-    /// Beams of each row's tree, whether it is posed or not.
-    beams_of: Vec<u32>,
+    /// What else is known of each row's tree.
+    seats: Vec<Seat>,
     row_places: Ranges,
     beams: Vec<BeamRow>,
     beam_places: Ranges,
     models: HashMap<AssetId<TreeModel>, ModelRows>,
-    poses: Ranges,
-    /// Whether `rows` or `beams` have changed since they were last sent.
+    poses: Allocator,
+    /// Poses that are in use, or have been.
+    pose_end: u32,
+    /// Whether a tree that is seen stands still for want of poses, and whether some were given back since.
+    is_short: bool,
+    has_more: bool,
+    /// Whether `rows`, `beams` or what is posed have changed since they were last sent.
     pub rows_changed: bool,
     pub beams_changed: bool,
+    pub posed_changed: bool,
+}
+
+#[derive(Clone, Default)]
+struct Seat {
+    /// Of its tree, whether it is posed or not.
+    beams: u32,
+    is_seen: bool,
+    poses: Option<Allocation>,
 }
 
 #[derive(Clone, Copy)]
@@ -39,7 +55,32 @@ struct ModelRows {
     count: u32,
 }
 
+impl Default for Stand {
+    fn default() -> Self {
+        Self::new(0)
+    }
+}
+
 impl Stand {
+    /// A stand with room for so many poses at once.
+    pub fn new(pose_limit: u32) -> Self {
+        Self {
+            rows: Vec::new(),
+            seats: Vec::new(),
+            row_places: Ranges::default(),
+            beams: Vec::new(),
+            beam_places: Ranges::default(),
+            models: HashMap::default(),
+            poses: Allocator::with_max_allocs(pose_limit, ROW_LIMIT),
+            pose_end: 0,
+            is_short: false,
+            has_more: false,
+            rows_changed: false,
+            beams_changed: false,
+            posed_changed: false,
+        }
+    }
+
     /// Adds the beams of a model, once.
     pub fn add_model(&mut self, id: AssetId<TreeModel>, beams: impl ExactSizeIterator<Item = BeamRow>) {
         let count = beams.len() as u32;
@@ -62,20 +103,17 @@ impl Stand {
         }
     }
 
-    /// Gives a tree of that model a row, or none if `pose_limit` poses are taken or the model is not there.
-    pub fn admit(&mut self, id: AssetId<TreeModel>, pose_limit: u32) -> Option<Standing> {
+    /// Gives a tree of that model a row, or none if there are too many trees or the model is not there.
+    pub fn admit(&mut self, id: AssetId<TreeModel>) -> Option<Standing> {
         let model = *self.models.get(&id)?;
-        // One pose more holds the wind at the tree.
-        let length = model.count + 1;
-        if !self.poses.has_room(length, pose_limit) || !self.row_places.has_room(1, ROW_LIMIT) {
+        if !self.row_places.has_room(1, ROW_LIMIT) {
             return None;
         }
-        let first_pose = self.poses.take(length);
         let row = self.row_places.take(1);
         self.rows.resize(self.row_places.end as usize, TreeRow::default());
-        self.beams_of.resize(self.row_places.end as usize, 0);
-        self.beams_of[row as usize] = model.count;
-        self.rows[row as usize] = TreeRow { first_beam: model.first, beam_count: model.count, first_pose, ..default() };
+        self.seats.resize(self.row_places.end as usize, Seat::default());
+        self.seats[row as usize] = Seat { beams: model.count, ..default() };
+        self.rows[row as usize] = TreeRow { first_beam: model.first, ..default() };
         self.rows_changed = true;
         Some(Standing { row })
     }
@@ -91,21 +129,67 @@ impl Stand {
         self.rows_changed = true;
     }
 
-    /// Has a tree posed, or no longer: nobody sees it.
-    fn wake(&mut self, standing: Standing, awake: bool) {
-        let Some(row) = self.rows.get_mut(standing.row as usize) else { return };
-        // A row without beams is skipped by the shaders.
-        let beam_count = if awake { self.beams_of[standing.row as usize] } else { 0 };
-        if row.beam_count != beam_count {
-            row.beam_count = beam_count;
-            self.rows_changed = true;
+    /// Has a tree posed that is seen, as long as there are poses, and no longer when it is not.
+    fn see(&mut self, standing: Standing, is_seen: bool) {
+        let Some(seat) = self.seats.get_mut(standing.row as usize) else { return };
+        seat.is_seen = is_seen;
+        if is_seen {
+            self.pose(standing.row as usize);
+        } else {
+            self.rest(standing.row as usize);
         }
     }
 
+    fn pose(&mut self, row: usize) {
+        let seat = &mut self.seats[row];
+        if seat.poses.is_some() {
+            return;
+        }
+        // One pose more holds the wind at the tree.
+        let length = seat.beams + 1;
+        let Some(poses) = self.poses.allocate(length) else {
+            self.is_short = true;
+            return;
+        };
+        seat.poses = Some(poses);
+        self.rows[row].first_pose = poses.offset;
+        self.rows[row].beam_count = seat.beams;
+        self.pose_end = self.pose_end.max(poses.offset + length);
+        (self.rows_changed, self.posed_changed) = (true, true);
+    }
+
+    fn rest(&mut self, row: usize) {
+        let Some(poses) = self.seats[row].poses.take() else { return };
+        self.poses.free(poses);
+        self.has_more = true;
+        self.rows[row].beam_count = 0;
+        (self.rows_changed, self.posed_changed) = (true, true);
+    }
+
+    /// Poses trees that are seen and for which there were no poses before, if there are now; says whether some still stand
+    /// still.
+    fn relieve(&mut self) -> bool {
+        if self.is_short && self.has_more {
+            self.is_short = false;
+            let waiting = |seat: &Seat| seat.is_seen && seat.poses.is_none();
+            (0..self.seats.len()).for_each(|row| {
+                if waiting(&self.seats[row]) {
+                    self.pose(row);
+                }
+            });
+        }
+        self.has_more = false;
+        self.is_short
+    }
+
     fn dismiss(&mut self, standing: Standing) {
-        let Some(row) = self.rows.get_mut(standing.row as usize) else { return };
-        self.poses.give_back(row.first_pose, self.beams_of[standing.row as usize] + 1);
-        *row = TreeRow::default();
+        let row = standing.row as usize;
+        if row >= self.rows.len() {
+            return;
+        }
+        self.rest(row);
+        self.seats[row] = Seat::default();
+        self.rows[row] = TreeRow::default();
         self.row_places.give_back(standing.row, 1);
         self.rows_changed = true;
     }
@@ -120,26 +204,28 @@ impl Stand {
 
     /// What its tables have on the graphics processor, bytes: both halves of the poses, with their reserve.
     pub fn bytes(&self) -> usize {
-        let poses = 2 * (self.poses.end + self.poses.end / 2) as usize * POSE_BYTES;
+        let poses = 2 * (self.pose_end + self.pose_end / 2) as usize * POSE_BYTES;
         size_of_val(self.rows.as_slice()) + size_of_val(self.beams.as_slice()) + poses
     }
 
     /// Poses that are in use, or have been.
     pub fn pose_count(&self) -> u32 {
-        self.poses.end
+        self.pose_end
     }
 
-    /// Beams of the largest model.
-    pub fn most_beams(&self) -> u32 {
-        self.models.values().map(|model| model.count).max().unwrap_or(0)
+    /// What is posed, a workgroup each: see [`pose_chunk`].
+    pub fn chunks(&self) -> Vec<u32> {
+        let posed = self.rows.iter().enumerate().filter(|(_, row)| row.beam_count > 0);
+        // One pose more than there are beams is that of the wind.
+        let chunks_of = |row: &TreeRow| 0..(row.beam_count + 1).div_ceil(CHUNK);
+        posed.flat_map(|(number, row)| chunks_of(row).map(move |chunk| pose_chunk(number as u32, chunk))).collect()
     }
 }
 
 /// Trees that one dispatch can hold in its second dimension (the least that WebGPU guarantees).
 const ROW_LIMIT: u32 = 65_535;
 
-/// Hands out ranges of a table, and again what was given back. Trees of a model need ranges of one length, so a range is
-/// only ever used for its own length, and nothing is ever moved.
+/// Hands out ranges of a table that keep their places, and again what was given back, for ranges of the same length.
 #[derive(Default)]
 struct Ranges {
     end: u32,
@@ -187,13 +273,19 @@ pub(super) fn place_trees(
 
 /// Has trees posed that come into sight, and no longer those that go: hidden ones, in cells that nobody sees, or with a card
 /// in their place.
-pub(super) fn wake_trees(
+pub(super) fn see_trees(
     mut stand: ResMut<Stand>,
+    path: Res<DrawPath>,
+    mut warned: Local<bool>,
     trees: Query<(&Standing, &InheritedVisibility), Or<(Changed<InheritedVisibility>, Added<Standing>)>>,
 ) {
     let stand = stand.bypass_change_detection();
     for (standing, visibility) in &trees {
-        stand.wake(*standing, visibility.get());
+        stand.see(*standing, visibility.get());
+    }
+    if stand.relieve() && !*warned {
+        warn!("windwood: this device can pose {} beams at once; trees beyond that stand still", path.pose_limit);
+        *warned = true;
     }
 }
 
@@ -212,15 +304,27 @@ mod tests {
         assert!(!ranges.has_room(10, 20) && ranges.has_room(2, 20));
     }
 
+    const BEAMS: u32 = 7;
+
+    /// A stand with room for so many poses, and a model in it.
+    fn stand(pose_limit: u32) -> (Stand, AssetId<TreeModel>) {
+        let (mut stand, id) = (Stand::new(pose_limit), AssetId::<TreeModel>::default());
+        stand.add_model(id, std::iter::repeat_n(BeamRow::default(), BEAMS as usize));
+        (stand, id)
+    }
+
+    fn posed(stand: &Stand) -> usize {
+        stand.rows().iter().filter(|row| row.beam_count == BEAMS).count()
+    }
+
     #[test]
     fn trees_that_come_and_go_leave_the_tables_as_they_were() {
-        let mut stand = Stand::default();
-        let id = AssetId::<TreeModel>::default();
-        stand.add_model(id, std::iter::repeat_n(BeamRow::default(), 7));
+        let (mut stand, id) = stand(10_000);
         let mut poses = 0;
         for round in 0..10 {
-            let standing: Vec<Standing> = (0..100).filter_map(|_| stand.admit(id, u32::MAX)).collect();
-            assert_eq!(standing.len(), 100);
+            let standing: Vec<Standing> = (0..100).filter_map(|_| stand.admit(id)).collect();
+            standing.iter().for_each(|tree| stand.see(*tree, true));
+            assert_eq!((standing.len(), posed(&stand)), (100, 100));
             if round == 0 {
                 poses = stand.pose_count();
             }
@@ -231,24 +335,37 @@ mod tests {
     }
 
     #[test]
-    fn who_sleeps_gives_back_what_it_had() {
-        let mut stand = Stand::default();
-        let id = AssetId::<TreeModel>::default();
-        stand.add_model(id, std::iter::repeat_n(BeamRow::default(), 7));
-        let tree = stand.admit(id, u32::MAX).unwrap();
-        stand.wake(tree, false);
-        assert_eq!(stand.rows()[0].beam_count, 0);
-        stand.dismiss(tree);
-        let next = stand.admit(id, u32::MAX).unwrap();
-        assert_eq!((stand.rows()[next.row as usize].beam_count, stand.pose_count()), (7, 8));
+    fn who_is_not_seen_gives_its_poses_to_who_is() {
+        let (mut stand, id) = stand(5 * (BEAMS + 1));
+        let trees: Vec<Standing> = (0..8).filter_map(|_| stand.admit(id)).collect();
+        assert_eq!(posed(&stand), 0);
+        trees.iter().for_each(|tree| stand.see(*tree, true));
+        assert!(stand.relieve());
+        assert_eq!(posed(&stand), 5);
+        trees[..2].iter().for_each(|tree| stand.see(*tree, false));
+        assert!(stand.relieve());
+        assert_eq!(posed(&stand), 5);
+        stand.dismiss(trees[2]);
+        assert!(!stand.relieve());
+        assert_eq!(posed(&stand), 5);
+        assert!(stand.pose_count() <= 5 * (BEAMS + 1));
     }
 
     #[test]
-    fn no_more_trees_are_admitted_than_there_are_poses() {
-        let mut stand = Stand::default();
-        let id = AssetId::<TreeModel>::default();
-        stand.add_model(id, std::iter::repeat_n(BeamRow::default(), 7));
-        let admitted = (0..10).filter(|_| stand.admit(id, 40).is_some()).count();
-        assert_eq!(admitted, 5);
+    fn nobody_has_the_poses_of_another() {
+        let (mut stand, id) = stand(10_000);
+        let other = AssetId::Uuid { uuid: AssetId::<TreeModel>::INVALID_UUID };
+        stand.add_model(other, std::iter::repeat_n(BeamRow::default(), 20));
+        let trees: Vec<Standing> = (0..300).filter_map(|tree| stand.admit(if tree % 3 == 0 { other } else { id })).collect();
+        for round in 0..7 {
+            for (number, tree) in trees.iter().enumerate() {
+                stand.see(*tree, (number + round) % 4 != 0);
+            }
+        }
+        let mut taken: Vec<(u32, u32)> = stand.rows().iter().filter(|row| row.beam_count > 0).map(|row| (row.first_pose, row.beam_count + 1)).collect();
+        taken.sort_unstable();
+        assert_eq!(taken.len(), 225);
+        assert!(taken.windows(2).all(|pair| pair[0].0 + pair[0].1 <= pair[1].0));
+        assert!(taken.last().is_some_and(|(first, length)| first + length <= stand.pose_count()));
     }
 }

@@ -23,6 +23,8 @@ pub(super) struct StandBuffers {
     pub winds: [Handle<ShaderBuffer>; 2],
     pub beams: Handle<ShaderBuffer>,
     pub trees: Handle<ShaderBuffer>,
+    /// What is posed, a workgroup each.
+    pub chunks: Handle<ShaderBuffer>,
     pub frame: Handle<ShaderBuffer>,
     /// Two halves, this frame's and the last frame's, which change places each frame.
     pub poses: Handle<ShaderBuffer>,
@@ -49,6 +51,7 @@ impl FromWorld for StandBuffers {
             winds: [empty(), empty()],
             beams: empty(),
             trees: empty(),
+            chunks: empty(),
             frame: empty(),
             poses: empty(),
             pose_capacity: 0,
@@ -108,13 +111,28 @@ pub(super) struct Uploads<'w> {
 impl Uploads<'_> {
     /// Writes a whole table. One of another size than before is another buffer, to which materials must be bound anew.
     fn write<T: Pod>(&mut self, handle: &Handle<ShaderBuffer>, rows: &[T]) {
-        let Some(mut buffer) = self.buffers.get_mut(handle) else { return };
-        let bytes: &[u8] = bytemuck::cast_slice(rows);
-        if buffer.buffer_description.size != bytes.len() as u64 {
-            buffer.buffer_description.size = bytes.len() as u64;
+        if self.replace(handle, rows) {
             self.shared.stale_materials = 2;
         }
+    }
+
+    /// Writes a whole table, and says whether it is of another size than before.
+    fn replace<T: Pod>(&mut self, handle: &Handle<ShaderBuffer>, rows: &[T]) -> bool {
+        let Some(mut buffer) = self.buffers.get_mut(handle) else { return false };
+        let bytes: &[u8] = bytemuck::cast_slice(rows);
+        let resized = buffer.buffer_description.size != bytes.len() as u64;
+        buffer.buffer_description.size = bytes.len() as u64;
         buffer.data = Some(bytes.to_vec());
+        resized
+    }
+
+    /// Tells what is posed. No material is bound to that.
+    fn pose(&mut self, chunks: &[u32], job: &mut PoseJob) {
+        job.chunks = chunks.len() as u32;
+        if !chunks.is_empty() {
+            let handle = self.shared.chunks.clone();
+            self.replace(&handle, chunks);
+        }
     }
 
     /// Makes room for poses: half as many again as are needed, so that a growing stand seldom needs it.
@@ -194,6 +212,9 @@ pub(super) fn upload_frame(
         (stand.rows_changed, stand.beams_changed) = (false, false);
         uploads.make_room(stand.pose_count());
     }
+    if std::mem::take(&mut stand.posed_changed) {
+        uploads.pose(&stand.chunks(), &mut job);
+    }
     uploads.rebind();
 
     let shared = &mut *uploads.shared;
@@ -201,14 +222,12 @@ pub(super) fn upload_frame(
     shared.first_half = !shared.first_half;
     job.both = rows_changed || shared.posed != Some((clock.previous_s, previous_blend));
     shared.posed = Some((clock.time_s, blend));
-    job.trees = stand.rows().len() as u32;
-    job.most_beams = stand.most_beams();
     let row = FrameRow {
         year: season.wrapped(),
         level_ends: sight.ladder.ends,
         cards_from_m: sight.ladder.cards_from_m,
         fade: sight.ladder.fade,
-        ..frame_row(&sway, &clock, shared, job.trees)
+        ..frame_row(&sway, &clock, shared, job.chunks)
     };
     let frame = shared.frame.clone();
     if let Some(mut buffer) = uploads.buffers.get_mut(&frame) {
@@ -217,7 +236,7 @@ pub(super) fn upload_frame(
     }
 }
 
-fn frame_row(sway: &ActiveSway, clock: &WindClock, shared: &StandBuffers, trees: u32) -> FrameRow {
+fn frame_row(sway: &ActiveSway, clock: &WindClock, shared: &StandBuffers, chunk_count: u32) -> FrameRow {
     let [a, b] = sway.slots();
     let seconds = |slot: Option<&Arc<WindResponse>>, time_s: f64| {
         slot.map_or(0.0, |response| wrapped_time_s(response, time_s) as f32)
@@ -231,7 +250,7 @@ fn frame_row(sway: &ActiveSway, clock: &WindClock, shared: &StandBuffers, trees:
         poses_now: halves[0],
         poses_before: halves[1],
         ready: u32::from(sway.is_ready() && shared.fits == [true; 2]),
-        tree_count: trees,
+        chunk_count,
         ..default()
     }
 }
@@ -240,7 +259,8 @@ impl FromWorld for PoseJob {
     fn from_world(world: &mut World) -> Self {
         let shared = world.resource::<StandBuffers>();
         let [a, b] = shared.winds.clone();
-        let buffers = [a, b, shared.beams.clone(), shared.trees.clone(), shared.frame.clone(), shared.poses.clone()];
-        Self { buffers, trees: 0, most_beams: 0, both: true }
+        let StandBuffers { beams, trees, chunks, frame, poses, .. } = shared;
+        let [beams, trees, chunks, frame, poses] = [beams, trees, chunks, frame, poses].map(Handle::clone);
+        Self { buffers: [a, b, beams, trees, chunks, frame, poses], chunks: 0, both: true }
     }
 }

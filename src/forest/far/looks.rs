@@ -8,7 +8,7 @@ use super::{
 use crate::{
     forest::cells::ForestCells,
     lod::{Lean, LevelSettings, Scene, ViewAtlas},
-    sway::{DrawPath, StandTables, TreeLighting},
+    sway::{DrawPath, LitAsTrees, StandTables, TreeLights},
     tree::{Species, bake_variants, growth::age::Age, painting::paint},
 };
 use bevy::{
@@ -73,7 +73,7 @@ pub(super) fn bake_far_looks(
     mut events: MessageReader<AssetEvent<Species>>,
     tables: Res<StandTables>,
     path: Res<DrawPath>,
-    lighting: Res<TreeLighting>,
+    lights: Res<TreeLights>,
     near: Res<NearCells>,
     species: Res<Assets<Species>>,
     forests: Query<&ForestCells>,
@@ -102,7 +102,7 @@ pub(super) fn bake_far_looks(
     baking.retain_mut(|(id, task)| {
         let Some(Baked { species, summer, atlas, leans }) = block_on(poll_once(task)) else { return true };
         let mut material = far_material(&species, summer, &atlas, &leans, &mut images, &tables, near.buffer.clone());
-        material.extension.lighting = *lighting;
+        *material.extension.lights_mut() = *lights;
         let frame = atlas.frame;
         // Wherever it leans.
         let reach_m = frame.centre.length() + frame.radius_m + frame.half_height_m;

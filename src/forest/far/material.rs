@@ -4,7 +4,7 @@ use super::mesh::{ATTRIBUTE_FAR, MOST_TREES};
 use crate::{
     lod::{Lean, ViewAtlas},
     shading::{define, image, lay_out},
-    sway::{SeasonUniform, StandTables, TreeLighting},
+    sway::{LitAsTrees, SeasonUniform, StandTables, TreeLights},
     tree::Species,
 };
 use bevy::{
@@ -25,7 +25,7 @@ pub type FarMaterial = ExtendedMaterial<StandardMaterial, FarExtension>;
 
 /// The views of a species, and what all far trees share.
 #[derive(Asset, AsBindGroup, Reflect, Clone, Debug)]
-#[bind_group_data(TreeLighting)]
+#[bind_group_data(TreeLights)]
 pub struct FarExtension {
     #[texture(100)]
     #[sampler(102)]
@@ -47,12 +47,12 @@ pub struct FarExtension {
     /// Cells whose trees stand near.
     #[storage(108, read_only)]
     near: Handle<ShaderBuffer>,
-    pub(super) lighting: TreeLighting,
+    lights: TreeLights,
 }
 
-impl From<&FarExtension> for TreeLighting {
+impl From<&FarExtension> for TreeLights {
     fn from(extension: &FarExtension) -> Self {
-        extension.lighting
+        extension.lights
     }
 }
 
@@ -112,15 +112,14 @@ pub(super) fn far_material(
             wind_a: wind_a.clone(),
             wind_b: wind_b.clone(),
             near,
-            lighting: TreeLighting::default(),
+            lights: TreeLights::default(),
         },
     }
 }
 
-/// Lights what is there by other lights.
-pub(super) fn relight(lighting: Res<TreeLighting>, mut materials: ResMut<Assets<FarMaterial>>) {
-    for (_, material) in materials.iter_mut() {
-        material.extension.lighting = *lighting;
+impl LitAsTrees for FarExtension {
+    fn lights_mut(&mut self) -> &mut TreeLights {
+        &mut self.lights
     }
 }
 

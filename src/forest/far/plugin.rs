@@ -3,7 +3,7 @@
 use super::{
     blocks::stream_far,
     looks::{FarLooks, bake_far_looks},
-    material::{FarMaterial, relight},
+    material::{FarExtension, FarMaterial},
     near::{NearCells, tell_near_cells},
 };
 use crate::{
@@ -13,7 +13,7 @@ use crate::{
         diagnose::ForestGizmoPlugin,
     },
     schedule::WindwoodSystems,
-    sway::{DrawPath, StandTables, TreeLighting},
+    sway::{DrawPath, StandTables, TreeLights, relight},
     timing::timed,
 };
 use bevy::{
@@ -49,7 +49,7 @@ impl Plugin for ForestDrawPlugin {
         let stream = timed!(app, bake_far_looks, stream_far);
         let tell = timed!(app, tell_near_cells);
         app.add_systems(Update, stream.chain().after(plant_cells).run_if(can_draw))
-            .add_systems(Update, relight.run_if(resource_changed::<TreeLighting>))
+            .add_systems(Update, relight::<FarExtension>.run_if(resource_changed::<TreeLights>))
             .add_systems(PostUpdate, tell.before(WindwoodSystems::Upload));
     }
 }

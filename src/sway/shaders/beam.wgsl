@@ -33,7 +33,7 @@ struct TreeRow {
     rotation: vec4<f32>,
     position: vec3<f32>,
     scale: f32,
-    // First row of its model in the beam table, and their number.
+    // First row of its model in the beam table, and their number: 0 while it is not posed, has no poses and is at rest.
     first_beam: u32,
     beam_count: u32,
     // First of its poses; one a beam, and one more that holds the wind at the tree.
@@ -49,6 +49,11 @@ struct BeamPose {
     translation: vec4<f32>,
 }
 
+// The pose of a beam at rest.
+fn at_rest() -> BeamPose {
+    return BeamPose(vec4(0.0), vec4(0.0, 0.0, 0.0, 1.0), vec4(0.0));
+}
+
 // The clock of one frame, see `FrameRow` in `sway/rows.rs`. A wind is one of two slots; `blend` fades from A to B.
 struct Frame {
     // x, y: now in the periods of slot A and B; z, w: one frame ago; s.
@@ -62,7 +67,8 @@ struct Frame {
     poses_before: u32,
     // 0 until the first wind is there: trees stand at rest.
     ready: u32,
-    tree_count: u32,
+    // Of the beams that are posed: `PoseChunk` of `pose.wgsl`.
+    chunk_count: u32,
     // Time of the year, 0..1.
     year: f32,
     // Where levels 0, 1 and 2 of a tree end, for each metre of its height.

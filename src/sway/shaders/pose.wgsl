@@ -12,14 +12,19 @@
 @group(#{MATERIAL_BIND_GROUP}) @binding(100) var<storage, read_write> poses: array<BeamPose>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(101) var<storage, read> beams: array<BeamRow>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(102) var<storage, read> trees: array<TreeRow>;
+// What each workgroup poses: a tree's row in the low half, which of its chunks of beams in the high half.
+@group(#{MATERIAL_BIND_GROUP}) @binding(104) var<storage, read> chunks: array<u32>;
 
-// Threads of a workgroup; `WORKGROUP` in `sway/compute.rs`.
+// Threads of a workgroup, and beams of a chunk; `CHUNK` in `sway/rows.rs`.
 const WORKGROUP: u32 = 64u;
+// Workgroups in the first dimension; `ACROSS` in `sway/compute.rs`.
+const ACROSS: u32 = 256u;
 // Deeper hierarchies are cut here rather than hang the graphics processor on a broken table.
 const DEEPEST: u32 = 64u;
 
 // What a thread works on: a tree, one of its beams (the one after the last stands for the wind), now or one frame ago.
 struct Job {
+    is_any: bool,
     tree: u32,
     beam: u32,
     frames_ago: u32,
@@ -27,19 +32,22 @@ struct Job {
     first_pose: u32,
 }
 
-fn job_of(id: vec3<u32>) -> Job {
-    let first = select(frame.poses_now, frame.poses_before, id.z == 1u);
-    return Job(id.y, id.x, id.z, first + trees[min(id.y, frame.tree_count - 1u)].first_pose);
+fn job_of(workgroup: vec3<u32>, thread: u32) -> Job {
+    let number = workgroup.y * ACROSS + workgroup.x;
+    let chunk = chunks[min(number, frame.chunk_count - 1u)];
+    let tree = chunk & 0xffffu;
+    let first = select(frame.poses_now, frame.poses_before, workgroup.z == 1u);
+    let beam = (chunk >> 16u) * WORKGROUP + thread;
+    return Job(number < frame.chunk_count, tree, beam, workgroup.z, first + trees[tree].first_pose);
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn find_tip_angles(@builtin(global_invocation_id) id: vec3<u32>) {
-    // A row without beams is nobody's, or of a tree that nobody sees.
-    if id.y >= frame.tree_count || trees[id.y].beam_count == 0u || id.x > trees[id.y].beam_count {
+fn find_tip_angles(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
+    let job = job_of(workgroup, thread);
+    let tree = trees[job.tree];
+    if !job.is_any || tree.beam_count == 0u || job.beam > tree.beam_count {
         return;
     }
-    let job = job_of(id);
-    let tree = trees[job.tree];
     let is_beam = job.beam < tree.beam_count;
     let row = beams[tree.first_beam + min(job.beam, tree.beam_count - 1u)];
     let direction = rotate(tree.rotation, row.direction);
@@ -65,12 +73,12 @@ fn find_tip_angles(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 @compute @workgroup_size(WORKGROUP)
-fn ride(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.y >= frame.tree_count || id.x >= trees[id.y].beam_count {
+fn ride(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
+    let job = job_of(workgroup, thread);
+    let tree = trees[job.tree];
+    if !job.is_any || job.beam >= tree.beam_count {
         return;
     }
-    let job = job_of(id);
-    let tree = trees[job.tree];
     var motion = Motion(vec3(0.0), vec4(0.0, 0.0, 0.0, 1.0));
     var row = beams[tree.first_beam + job.beam];
     for (var depth = 0u; depth < DEEPEST && row.parent != NO_PARENT; depth += 1u) {

@@ -86,6 +86,14 @@ fn lag_of(in: Vertex, tag: u32) -> f32 {
 }
 #endif
 
+// The wind at a tree, m/s, in tree-local axes; none where it is not posed.
+fn wind_at(tree: beam::TreeRow, first_pose: u32) -> vec3<f32> {
+    if tree.beam_count == 0u {
+        return vec3(0.0);
+    }
+    return poses[first_pose + tree.first_pose + tree.beam_count].tip_angle.xyz;
+}
+
 // The vertex where the wind has it, in tree-local space.
 fn swayed(
     in: Vertex,
@@ -98,11 +106,14 @@ fn swayed(
 ) -> beam::Motion {
     let index = u32(in.sway.x + 0.5);
     let row = beams[tree.first_beam + index];
-    let pose = poses[first_pose + tree.first_pose + index];
+    var pose = beam::at_rest();
+    if tree.beam_count > 0u {
+        pose = poses[first_pose + tree.first_pose + index];
+    }
 #ifdef WINDWOOD_LEAVES
     // The bough carries the anchor and the leaf as it rests; the leaf then turns about the anchor.
     let carried = beam::carry(row, pose, in.sway.y, in.anchor.xyz);
-    let wind = poses[first_pose + tree.first_pose + tree.beam_count].tip_angle.xyz;
+    let wind = wind_at(tree, first_pose);
     let turn = leaf::turn(beam::rotate(carried.rotation, in.axis.xyz), wind, leaf_time_s, in.sway.z);
     let rotation = beam::then(carried.rotation, turn);
     let reach = in.position - in.anchor.xyz;
@@ -219,7 +230,7 @@ const BORDER: f32 = 0.02;
 
 // The image of the sequence that a tree shows now: each tree begins with another.
 fn image_of(in: Vertex, tag: u32, tree: beam::TreeRow) -> f32 {
-    let wind = poses[frame.poses_now + tree.first_pose + tree.beam_count].tip_angle.xyz;
+    let wind = wind_at(tree, frame.poses_now);
     if length(wind) < LEAST_WIND_M_S {
         return 0.0;
     }

@@ -1,9 +1,8 @@
 // What a far tree looks like: its views, in the colours of the season, lit by their normals.
 
 #import bevy_pbr::forward_io::{FragmentOutput, VertexOutput}
-#import bevy_pbr::pbr_fragment::pbr_input_from_standard_material
 #import bevy_pbr::pbr_functions::{main_pass_post_lighting_processing, visibility_range_dither}
-#import bevy_windwood::{beam, far, light, season}
+#import bevy_windwood::{beam, far, light, season, surface}
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(103) var<storage, read> frame: beam::Frame;
 
@@ -25,14 +24,14 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
         colour = season::recoloured(colour, state.autumn - state.youth, saturate(0.5 + 1.5 * own));
         colour *= vec3(1.0 + 0.2 * own, 1.0 + 0.06 * own, 1.0 - 0.25 * own);
     }
-    var pbr_input = pbr_input_from_standard_material(in, is_front);
+    var pbr_input = surface::plain(in, is_front, vec4(colour, 1.0));
     let agreement = min(length(seen.normal), 1.0);
     let normal = far::turned(normalize(seen.normal + vec3(0.0, 1e-4, 0.0)), in.uv_b.x);
     pbr_input.N = normal;
     pbr_input.world_normal = normal;
-    pbr_input.material.base_color = vec4(colour, 1.0);
     // What faces all ways is lit from behind as much as from before.
     pbr_input.material.diffuse_transmission = mix(0.5, far::views.translucency * seen.leaf, agreement);
+    surface::occlude(&pbr_input);
     var out: FragmentOutput;
     out.color = light::lit(pbr_input);
     out.color = main_pass_post_lighting_processing(pbr_input, out.color);
