@@ -5,7 +5,7 @@
 
 #import bevy_windwood::beam::{BeamPose, BeamRow, Motion, NO_PARENT, TreeRow, bend, conjugate, rotate, tip_angle}
 #import bevy_windwood::wind::{
-    frame, place_of, pressure, response_at, slot_of, slot_time, slot_weight, to_world,
+    blows_in, first_slot, frame, place_of, pressure, response_at, slot_of, slot_time, slot_weight, to_world,
 }
 
 // The tables have the same binding numbers in every shader of ours, see `compute.rs`.
@@ -53,10 +53,11 @@ fn find_tip_angles(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_i
     let direction = rotate(tree.rotation, row.direction);
     // In world axes: pressure for a beam, m^2/s^2; velocity for the wind, m/s.
     var felt = vec3(0.0);
-    for (var slot = 0u; slot < 2u; slot += 1u) {
-        let weight = slot_weight(slot, job.frames_ago) * f32(frame.ready);
-        if weight > 0.0 {
+    if frame.ready == 1u {
+        var slot = first_slot(job.frames_ago);
+        loop {
             let wind = slot_of(slot);
+            let weight = slot_weight(slot, job.frames_ago);
             let place = place_of(wind, tree.position, slot_time(slot, job.frames_ago));
             if is_beam {
                 // A tree scaled as a whole sways slower by its scale and bends by the same angles.
@@ -64,6 +65,10 @@ fn find_tip_angles(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_i
                 felt += weight * pressure(slot, wind, place, direction, class_coordinate);
             } else {
                 felt += weight * to_world(wind, response_at(slot, wind, wind.classes, place).xyz);
+            }
+            continuing {
+                slot += 1u;
+                break if !blows_in(slot, job.frames_ago);
             }
         }
     }

@@ -115,23 +115,39 @@ fn slot_time(slot: u32, frames_ago: u32) -> f32 {
     return select(time.x, time.y, slot == 1u);
 }
 
+// Winds blow in one slot, or in two while one fades into another. Who reads them begins here and goes on while
+// `blows_in` holds; such a loop, whose test is at its end, is run no more often than there are winds even by a processor
+// that runs every branch. While there is no wind at all (`frame.ready` is 0) there is nothing to read.
+fn first_slot(frames_ago: u32) -> u32 {
+    return select(0u, 1u, slot_weight(0u, frames_ago) == 0.0);
+}
+
+fn blows_in(slot: u32, frames_ago: u32) -> bool {
+    return slot < 2u && slot_weight(slot, frames_ago) > 0.0;
+}
+
 // Velocity of the air at a place in the world, m/s, in world axes, smooth across the wind; `frames_ago` is 0 or 1.
 fn velocity_at(position: vec3<f32>, frames_ago: u32) -> vec3<f32> {
     var velocity = vec3(0.0);
-    for (var slot = 0u; slot < 2u; slot += 1u) {
-        let weight = slot_weight(slot, frames_ago) * f32(frame.ready);
-        if weight > 0.0 {
-            let wind = slot_of(slot);
-            let here = place_of(wind, position, slot_time(slot, frames_ago));
-            // `here` is the nearest column: which side of it, and how far to that neighbour?
-            let across = dot(position, wind.across) / wind.column_spacing_m;
-            let offset = across - floor(across + 0.5);
-            let step = select(1u, wind.columns - 1u, offset < 0.0);
-            let there = Place((here.column + step) % wind.columns, here.sample, here.fraction);
-            let share = smoothstep(0.0, 1.0, abs(offset));
-            let near = response_at(slot, wind, wind.classes, here).xyz;
-            let far = response_at(slot, wind, wind.classes, there).xyz;
-            velocity += weight * to_world(wind, mix(near, far, share));
+    if frame.ready == 0u {
+        return velocity;
+    }
+    var slot = first_slot(frames_ago);
+    loop {
+        let wind = slot_of(slot);
+        let here = place_of(wind, position, slot_time(slot, frames_ago));
+        // `here` is the nearest column: which side of it, and how far to that neighbour?
+        let across = dot(position, wind.across) / wind.column_spacing_m;
+        let offset = across - floor(across + 0.5);
+        let step = select(1u, wind.columns - 1u, offset < 0.0);
+        let there = Place((here.column + step) % wind.columns, here.sample, here.fraction);
+        let share = smoothstep(0.0, 1.0, abs(offset));
+        let near = response_at(slot, wind, wind.classes, here).xyz;
+        let far = response_at(slot, wind, wind.classes, there).xyz;
+        velocity += slot_weight(slot, frames_ago) * to_world(wind, mix(near, far, share));
+        continuing {
+            slot += 1u;
+            break if !blows_in(slot, frames_ago);
         }
     }
     return velocity;

@@ -4,7 +4,7 @@
 #import bevy_pbr::mesh_view_bindings::view
 #import bevy_pbr::view_transformations::position_world_to_clip
 #import bevy_windwood::{beam, eye, far, level}
-#import bevy_windwood::wind::{frame, place_of, pressure, slot_of, slot_time, slot_weight}
+#import bevy_windwood::wind::{blows_in, first_slot, frame, place_of, pressure, slot_of, slot_time, slot_weight}
 
 #ifdef PREPASS_PIPELINE
 #import bevy_pbr::prepass_io::VertexOutput
@@ -57,13 +57,18 @@ fn dither_of(foot: vec3<f32>, height_m: f32) -> i32 {
 fn lean_of(foot: vec3<f32>, tree: u32, size: f32, frames_ago: u32) -> vec2<f32> {
     let own = far::views.leans[tree];
     var felt = vec2(0.0);
-    for (var slot = 0u; slot < 2u; slot += 1u) {
-        let weight = slot_weight(slot, frames_ago) * f32(frame.ready);
-        if weight > 0.0 {
-            let blowing = slot_of(slot);
-            let place = place_of(blowing, foot, slot_time(slot, frames_ago));
-            let frequency = own.y - log(max(size, 1e-3)) * blowing.inverse_ln_class_ratio;
-            felt += weight * pressure(slot, blowing, place, vec3(0.0, 1.0, 0.0), frequency).xz;
+    if frame.ready == 0u {
+        return felt;
+    }
+    var slot = first_slot(frames_ago);
+    loop {
+        let blowing = slot_of(slot);
+        let place = place_of(blowing, foot, slot_time(slot, frames_ago));
+        let frequency = own.y - log(max(size, 1e-3)) * blowing.inverse_ln_class_ratio;
+        felt += slot_weight(slot, frames_ago) * pressure(slot, blowing, place, vec3(0.0, 1.0, 0.0), frequency).xz;
+        continuing {
+            slot += 1u;
+            break if !blows_in(slot, frames_ago);
         }
     }
     let free = felt * own.x;
