@@ -42,7 +42,7 @@ fn the_times_of_a_leaf_are_the_same_in_both_languages() {
         let line = text.lines().find(|line| line.starts_with(&format!("const {name}: f32"))).expect("it is there");
         line.split('=').nth(1).expect("it has a value").trim().trim_end_matches(';').parse().expect("a number")
     };
-    for name in ["DROP", "YOUTH", "DRIFT"] {
+    for name in ["DROP", "YOUTH", "DRIFT", "FARTHEST_M"] {
         assert_eq!(value(code, name), value(shader, name));
     }
 }

@@ -6,7 +6,8 @@
 use super::{cells::ForestCells, components::ForestCell, extent::Reach};
 use crate::{
     cells::{Sun, View, Watch},
-    tree::{Grove, TreeModel},
+    sway::Exposure,
+    tree::{Grove, SwayBounds, TreeModel},
 };
 use bevy::{
     camera::primitives::Frustum,
@@ -105,11 +106,12 @@ impl Sights {
     }
 }
 
-/// Notes how far the trees of a species may reach, when more of them have been baked.
+/// Notes how far the trees of a species may reach, when more of them have been baked or another wind blows.
 pub(super) fn measure_species(
     mut commands: Commands,
     grove: Res<Grove>,
     models: Res<Assets<TreeModel>>,
+    exposure: Option<Res<Exposure>>,
     mut forests: Query<(Entity, Ref<ForestCells>, Option<&mut Sights>)>,
 ) {
     for (entity, forest, sights) in &mut forests {
@@ -117,15 +119,21 @@ pub(super) fn measure_species(
             commands.entity(entity).insert(Sights::default());
             continue;
         };
-        if !grove.is_changed() && !sights.is_added() && !forest.is_added() {
+        let exposed_anew = exposure.as_ref().is_some_and(|exposure| exposure.is_changed());
+        if !grove.is_changed() && !exposed_anew && !sights.is_added() && !forest.is_added() {
             continue;
         }
+        // Without a renderer trees have all the room that they may ever need.
+        let exposure = exposure.as_deref().copied().unwrap_or_default();
         sights.made_for = None;
         sights.reaches.clear();
         sights.reaches.extend(forest.species().iter().map(|species| {
-            let stages = grove.get(species.id()).into_iter().flat_map(|entry| entry.stages.values());
-            let models = stages.flat_map(|stage| &stage.models).filter_map(|model| models.get(model));
-            models.fold(Reach::default(), |reach, model| reach.with(model.bounds.min, model.bounds.max))
+            let Some(entry) = grove.get(species.id()) else { return Reach::default() };
+            let grown = entry.stages.values().flat_map(|stage| &stage.models).filter_map(|model| models.get(model));
+            grown.fold(Reach::default(), |reach, model| {
+                let SwayBounds { min, max } = exposure.bounds(model, &entry.species.phenology);
+                reach.with(min, max)
+            })
         }));
     }
 }

@@ -5,12 +5,17 @@
 
 use super::{
     detail::{Levels, MOST_LEVELS, Sight},
+    exposure::Exposure,
     looks::{Garment, SpeciesDressed, VariantLook, Wardrobe},
     rouse::CulledOnGpu,
     stand::{Stand, Standing},
 };
-use crate::tree::{Grown, Species, Tree};
-use bevy::{camera::visibility::NoAutoAabb, mesh::MeshTag, prelude::*};
+use crate::tree::{Grown, Species, Tree, TreeModel};
+use bevy::{
+    camera::{primitives::Aabb, visibility::NoAutoAabb},
+    mesh::MeshTag,
+    prelude::*,
+};
 
 /// How this machine can draw trees; found out once at start.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,6 +128,28 @@ pub(super) fn dress_trees(
     } else {
         let due = |tree: &Tree, entity| renewed.contains(&tree.species.id()) || regrown.contains(entity);
         trees.iter().filter(|(entity, tree, ..)| due(tree, *entity)).for_each(&mut dress);
+    }
+}
+
+/// Gives trees more room when a stronger wind comes, and takes back what they need no more.
+pub(super) fn fit_boxes(
+    exposure: Res<Exposure>,
+    models: Res<Assets<TreeModel>>,
+    mut wardrobe: ResMut<Wardrobe>,
+    mut trees: Query<(&Tree, &Grown, &mut Aabb, Option<&Children>), With<Worn>>,
+    mut draws: Query<&mut Aabb, (Or<(With<Foliage>, With<Coming>)>, Without<Worn>)>,
+) {
+    if !exposure.is_changed() {
+        return;
+    }
+    wardrobe.fit_boxes(&models, &exposure);
+    for (tree, grown, mut bounds, children) in &mut trees {
+        let Some(variant) = wardrobe.variant(tree.species.id(), grown.model.id()) else { continue };
+        bounds.set_if_neq(variant.bounds);
+        let mut draws = draws.iter_many_mut(children.into_iter().flatten());
+        while let Some(mut bounds) = draws.fetch_next() {
+            bounds.set_if_neq(variant.bounds);
+        }
     }
 }
 
@@ -258,7 +285,7 @@ impl Dress<'_> {
         if same {
             return;
         }
-        // The box holds every pose; the mesh's own would cull a tree that leans into the view.
+        // The box holds every pose of now; the mesh's own would cull a tree that leans into the view.
         entity.insert((Mesh3d(garment.mesh.clone()), self.variant.bounds, NoAutoAabb));
         match &garment.outfit.swaying {
             Some(swaying) if self.standing.is_some() => entity.insert(MeshMaterial3d(swaying.clone())),

@@ -4,7 +4,8 @@ use super::{
     compute,
     compute::{PoseJob, STORAGE_BUFFERS_NEEDED},
     detail::{CardRange, LevelOfDetail, Sight, look_about},
-    draw::{DrawPath, choose_levels, dress_trees},
+    draw::{DrawPath, choose_levels, dress_trees, fit_boxes},
+    exposure::{Exposure, find_exposure},
     lighting::{TreeLighting, TreeLights, find_lights, relight},
     looks::{SpeciesDressed, Tailoring, Wardrobe, finish_tailoring, start_tailoring},
     material::{SwayExtension, SwayMaterial},
@@ -59,6 +60,7 @@ impl Plugin for SwayDrawPlugin {
             .init_resource::<LevelOfDetail>()
             .init_resource::<Sight>()
             .insert_resource(CardRange { from_m: None })
+            .init_resource::<Exposure>()
             .init_resource::<TreeLighting>()
             .init_resource::<TreeLights>()
             .register_type::<LevelOfDetail>()
@@ -78,7 +80,7 @@ impl Plugin for SwayDrawPlugin {
                         .before(VisibilitySystems::CheckVisibility),
                 ),
             );
-        let dress = timed!(app, look_about, start_tailoring, finish_tailoring, choose_levels, dress_trees);
+        let dress = timed!(app, look_about, find_exposure, start_tailoring, finish_tailoring, fit_boxes, choose_levels, dress_trees);
         let dress =
             dress.chain().after(receive_models).in_set(WindwoodSystems::Grow).run_if(resource_exists::<DrawPath>);
         let upload = timed!(app, upload_winds, place_trees, see_trees, upload_frame);

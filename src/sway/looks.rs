@@ -3,11 +3,12 @@
 use super::{
     cut::{Cut, LevelCut, Piece, VariantCut, cut},
     detail::{LevelStyle, Sight},
+    exposure::Exposure,
     outfits::{Dyer, Outfit, SpeciesOutfits},
     rows::BeamRow,
     stand::Stand,
 };
-use crate::tree::{Grove, Species, SpeciesBaked, TreeModel};
+use crate::tree::{Grove, Species, SpeciesBaked, TreeModel, phenology::Phenology};
 use bevy::{
     camera::primitives::Aabb,
     ecs::system::SystemParam,
@@ -26,6 +27,7 @@ pub(super) struct Wardrobe {
 struct SpeciesLooks {
     /// Which of the species' generations the outfits are of.
     generation: u64,
+    phenology: Phenology,
     outfits: SpeciesOutfits,
     variants: HashMap<AssetId<TreeModel>, VariantLook>,
 }
@@ -35,6 +37,7 @@ pub(super) struct VariantLook {
     step: i32,
     /// From the finest to the coarsest: at least one.
     pub levels: Vec<LevelLook>,
+    /// Around all that it does in the winds that blow.
     pub bounds: Aabb,
     pub height_m: f32,
 }
@@ -76,6 +79,17 @@ pub(super) struct Tailoring {
 impl Wardrobe {
     pub fn variant(&self, species: AssetId<Species>, model: AssetId<TreeModel>) -> Option<&VariantLook> {
         self.looks.get(&species)?.variants.get(&model)
+    }
+
+    /// Gives every variant the room that it needs now.
+    pub fn fit_boxes(&mut self, models: &Assets<TreeModel>, exposure: &Exposure) {
+        for SpeciesLooks { phenology, variants, .. } in self.looks.values_mut() {
+            for (id, variant) in variants {
+                if let Some(model) = models.get(*id) {
+                    variant.bounds = exposure.aabb(model, phenology);
+                }
+            }
+        }
     }
 }
 
@@ -124,6 +138,7 @@ pub(super) fn start_tailoring(
 pub(super) struct Atelier<'w> {
     meshes: ResMut<'w, Assets<Mesh>>,
     models: Res<'w, Assets<TreeModel>>,
+    exposure: Res<'w, Exposure>,
     stand: ResMut<'w, Stand>,
     dyer: Dyer<'w>,
 }
@@ -154,7 +169,8 @@ pub(super) fn finish_tailoring(
         if let Some(textures) = cut.textures {
             let outfits = atelier.dyer.outfits(&entry.species, &textures);
             let variants = wardrobe.looks.remove(&species).map(|old| old.variants).unwrap_or_default();
-            wardrobe.looks.insert(species, SpeciesLooks { generation, outfits, variants });
+            let phenology = entry.species.phenology;
+            wardrobe.looks.insert(species, SpeciesLooks { generation, phenology, outfits, variants });
         }
         let Some(looks) = wardrobe.looks.get_mut(&species) else { continue };
         atelier.sew(looks, step, &stage.models, cut.variants);
@@ -176,7 +192,7 @@ impl Atelier<'_> {
         for (handle, VariantCut { levels, height_m }) in models.iter().zip(variants) {
             let Some(model) = self.models.get(handle) else { continue };
             self.stand.add_model(handle.id(), model.beams.iter().map(BeamRow::from));
-            let bounds = Aabb::from_min_max(model.bounds.min, model.bounds.max);
+            let bounds = self.exposure.aabb(model, &looks.phenology);
             let levels = levels.into_iter().map(|level| self.level(level, &looks.outfits)).collect();
             looks.variants.insert(handle.id(), VariantLook { step, levels, bounds, height_m });
         }

@@ -24,6 +24,8 @@ mod draw;
 #[cfg(feature = "render")]
 mod draw_plugin;
 #[cfg(feature = "render")]
+mod exposure;
+#[cfg(feature = "render")]
 mod lighting;
 #[cfg(feature = "render")]
 mod looks;
@@ -60,6 +62,7 @@ pub use {
 pub(crate) use {
     detail::CardRange,
     draw::{CardBehind, TreesByLevel},
+    exposure::Exposure,
     lighting::{LitAsTrees, TreeLights, relight},
     material::SeasonUniform,
     rouse::CulledOnGpu,

@@ -6,6 +6,7 @@
 //! for each variant of a species and shared by all its [`Tree`]s.
 
 pub mod bark;
+mod bounds;
 mod components;
 pub mod crown;
 pub mod foliage;
@@ -26,10 +27,11 @@ pub mod skeleton;
 pub mod species;
 mod tube;
 
+pub use bounds::SwayBounds;
 pub use components::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Tree, TreeBeams, TreeLeaves};
 pub use grove::{BakedSpecies, BakedStage, Grove, SpeciesBaked, bake_variants};
 pub use loader::SpeciesLoadError;
-pub use model::{SwayBounds, TreeModel};
+pub use model::TreeModel;
 pub use plugin::TreePlugin;
 pub use season::Season;
 pub use species::{Species, SpeciesError};

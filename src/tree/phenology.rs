@@ -77,10 +77,23 @@ pub struct LeafState {
 const DROP: f32 = 0.014;
 /// How long after that some of its leaves are still in the air, as a share of the year: two weeks.
 const DRIFT: f32 = 0.04;
+/// So much earlier than its species does a tree lose its leaves at most: five weeks.
+const EARLIEST: f32 = 0.1;
+/// How far a leaf in the air may get, m.
+const FARTHEST_M: f32 = 5.0;
 /// How long leaves stay light after they have unfolded, as a share of the year: seven weeks.
 const YOUTH: f32 = 0.13;
 
 impl Phenology {
+    /// How far a leaf that has fallen may drift to either side, m.
+    pub const DRIFT_M: f32 = FARTHEST_M;
+
+    /// Whether a tree may have leaves in the air at that time of the year, be it up to five weeks early or late itself.
+    #[must_use]
+    pub fn may_shed(&self, year: f32) -> bool {
+        !self.evergreen && year >= self.fall - 0.5 * self.fall_length - EARLIEST
+    }
+
     pub(super) fn validate(&self) -> Result<(), SpeciesError> {
         require("flush", self.flush, 0.05..=0.6)?;
         require("flush_length", self.flush_length, 0.01..=0.3)?;

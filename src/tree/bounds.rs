@@ -1,0 +1,202 @@
+//! Boxes around trees in the wind.
+//!
+//! The wind's strength bounds how far each beam's tip turns, `Theta`, and with that how far anything is moved. Where a beam
+//! is attached, its parent has moved by at most `D` and turned by at most `R`; a point of the beam's axis at `s`, at a
+//! distance `r` from there, moves by at most `D + R r + L Theta H_1(s)` and turns by at most `R + Theta h(s)`, in whatever
+//! direction the loads are (`h` and `H_1` of `dynamics/pose.rs`: the axis turns by `Theta h`, and so leaves its place by no
+//! more than the integral). In a great storm that sum is far more than the saturating beams can reach, and the box is that
+//! of the limit, which is found by bending the tree.
+
+use super::{leaf_mesh::LeafVertices, mesh::WoodVertices};
+use crate::dynamics::pose::{BeamDynamics, BeamPose, SLOPE_TIP, TIP_ANGLE_LIMIT, TreePoser, mode_shape};
+use bevy::math::Vec3;
+
+/// An axis-aligned box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SwayBounds {
+    /// Least corner, m.
+    pub min: Vec3,
+    /// Greatest corner, m.
+    pub max: Vec3,
+}
+
+impl SwayBounds {
+    /// What both boxes have in common.
+    pub(super) fn intersection(self, other: Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+}
+
+/// How far the root of a beam has been moved, m, and turned, rad, at most, about a place of its parent.
+#[derive(Clone, Copy)]
+struct Carried {
+    about: Vec3,
+    moved_m: f32,
+    turned_rad: f32,
+    /// By how much its own tip turns at most.
+    tip_rad: f32,
+}
+
+impl Carried {
+    /// The place at `s` of the axis, how far that is moved, m, and turned, rad, at most.
+    fn at(&self, beam: &BeamDynamics, s: f32) -> (Vec3, f32, f32) {
+        let [h, h1, ..] = mode_shape(s);
+        let place = beam.base + beam.direction * (beam.length_m * s);
+        let moved_m = self.moved_m + self.turned_rad * place.distance(self.about) + beam.length_m * self.tip_rad * h1;
+        (place, moved_m, self.turned_rad + self.tip_rad * h)
+    }
+}
+
+/// The box around all that is bound to the beams while no load on them is above that pressure, m²/s².
+pub(super) fn bounds_under(beams: &[BeamDynamics], reaches_m: &[f32], pressure: f32) -> SwayBounds {
+    let pressure = if pressure.is_nan() { f32::MAX } else { pressure.clamp(0.0, f32::MAX) };
+    let mut bounds = SwayBounds { min: Vec3::ZERO, max: Vec3::ZERO };
+    let mut carried: Vec<Carried> = Vec::with_capacity(beams.len());
+    for (beam, reach_m) in beams.iter().zip(reaches_m) {
+        let free_rad = SLOPE_TIP * beam.gain * pressure;
+        let tip_rad = free_rad.min(TIP_ANGLE_LIMIT);
+        let own = match carried.get(beam.parent as usize) {
+            Some(parent) => {
+                let (about, moved_m, turned_rad) = parent.at(&beams[beam.parent as usize], beam.attach);
+                Carried { about, moved_m, turned_rad, tip_rad }
+            }
+            None => Carried { about: beam.base, moved_m: 0.0, turned_rad: 0.0, tip_rad },
+        };
+        for s in [0.0, 0.5, 1.0] {
+            let (place, moved_m, _) = own.at(beam, s);
+            bounds.min = bounds.min.min(place - (moved_m + reach_m));
+            bounds.max = bounds.max.max(place + (moved_m + reach_m));
+        }
+        carried.push(own);
+    }
+    bounds
+}
+
+/// Directions into which the whole tree is bent to its limit to find its bounds.
+const BOUND_DIRECTIONS: usize = 8;
+/// Share by which the box is widened for poses between those directions and for points between the places on a beam.
+const BOUND_MARGIN: f32 = 0.08;
+/// Places on a beam whose surroundings are enclosed; its root lies on its parent.
+const BOUND_PLACES: [f32; 2] = [0.5, 1.0];
+/// A free tip angle at which beams have saturated, rad.
+const HURRICANE_RAD: f32 = 1e3;
+
+/// Bends every beam to its limit into each of a ring of directions, and takes the box around all that is bound to it.
+pub(super) fn limit_bounds(beams: &[BeamDynamics], reaches_m: &[f32]) -> SwayBounds {
+    let mut bounds = SwayBounds { min: Vec3::ZERO, max: Vec3::ZERO };
+    let mut poses = vec![BeamPose::REST; beams.len()];
+    for step in 0..=BOUND_DIRECTIONS {
+        let azimuth = step as f32 / BOUND_DIRECTIONS as f32 * std::f32::consts::TAU;
+        // The last step is the tree at rest.
+        let lean = if step == BOUND_DIRECTIONS { Vec3::ZERO } else { Vec3::new(azimuth.cos(), 0.0, azimuth.sin()) };
+        let to_the_limit =
+            |beam: &BeamDynamics| lean.reject_from_normalized(beam.direction).normalize_or_zero() * HURRICANE_RAD;
+        TreePoser::bent(beams, to_the_limit).pose(&[], &mut poses);
+        for ((beam, pose), reach_m) in beams.iter().zip(&poses).zip(reaches_m) {
+            for s in BOUND_PLACES {
+                let (carried, _) = pose.carry(beam, s, beam.base + beam.direction * (beam.length_m * s));
+                bounds.min = bounds.min.min(carried - *reach_m);
+                bounds.max = bounds.max.max(carried + *reach_m);
+            }
+        }
+    }
+    let margin = (bounds.max - bounds.min) * BOUND_MARGIN;
+    SwayBounds { min: bounds.min - margin, max: bounds.max + margin }
+}
+
+/// For each beam the greatest distance of what is bound to it from the place on its axis that carries it, m; a leaf may
+/// turn anywhere about its anchor.
+pub(super) fn reaches_m(beams: &[BeamDynamics], wood: &WoodVertices, leaves: &LeafVertices) -> Vec<f32> {
+    let mut reaches = vec![0.0_f32; beams.len()];
+    let mut reach = |sway: &[f32; 4], at: Vec3, beyond_m: f32| {
+        let index = sway[0] as usize;
+        let beam = &beams[index];
+        let axis = beam.base + beam.direction * (beam.length_m * sway[1]);
+        reaches[index] = reaches[index].max(at.distance(axis) + beyond_m);
+    };
+    for (sway, position) in wood.sway.iter().zip(&wood.positions) {
+        reach(sway, Vec3::from_array(*position), 0.0);
+    }
+    for (sway, (position, anchor)) in leaves.sway.iter().zip(leaves.positions.iter().zip(&leaves.anchor)) {
+        let anchor = Vec3::from_slice(anchor);
+        reach(sway, anchor, Vec3::from_array(*position).distance(anchor));
+    }
+    reaches
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tree::{Species, TreeModel};
+    use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
+
+    /// Whether all wood is in a box while every beam is bent by some free angle, rad.
+    fn holds(bounds: SwayBounds, model: &TreeModel, mut free_angle: impl FnMut(&BeamDynamics) -> Vec3) -> bool {
+        let angles: Vec<Vec3> = model.beams.iter().map(&mut free_angle).collect();
+        // `bent` asks for the beams in their order.
+        let next = std::cell::Cell::new(0);
+        let angle = |_: &BeamDynamics| angles[next.replace(next.get() + 1)];
+        let mut poses = vec![BeamPose::REST; model.beams.len()];
+        TreePoser::bent(&model.beams, angle).pose(&[], &mut poses);
+        model.wood.sway.iter().zip(&model.wood.positions).all(|(sway, at)| {
+            let beam = sway[0] as usize;
+            let (carried, _) = poses[beam].carry(&model.beams[beam], sway[1], Vec3::from_array(*at));
+            carried.cmpge(bounds.min).all() && carried.cmple(bounds.max).all()
+        })
+    }
+
+    fn odd(random: &mut Xoshiro256PlusPlus) -> Vec3 {
+        let mut odd = || random.random_range(-1.0..1.0);
+        Vec3::new(odd(), odd(), odd())
+    }
+
+    /// Trees whose beams are bent at random, to the limit and all over the place, stay in their box.
+    #[test]
+    fn no_pose_leaves_the_bounds() {
+        for seed in 0..3 {
+            let model = TreeModel::bake(&Species::default(), 120.0, seed);
+            let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+            for _ in 0..20 {
+                let wind = odd(&mut random).with_y(0.3);
+                assert!(holds(model.bounds, &model, |beam| {
+                    let free = wind + 0.5 * odd(&mut random);
+                    free.reject_from_normalized(beam.direction) * random.random_range(0.0..100.0)
+                }));
+            }
+        }
+    }
+
+    /// Nor do they leave the box of a wind, whose pressure all or some of their beams feel from one side or from any.
+    #[test]
+    fn no_pose_in_a_wind_leaves_its_bounds() {
+        for seed in 0..3 {
+            let model = TreeModel::bake(&Species::default(), 120.0, seed);
+            let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+            for pressure in [0.0, 3.0, 30.0, 300.0, 3000.0] {
+                let bounds = model.bounds_under(pressure);
+                for round in 0..30_u8 {
+                    let wind = odd(&mut random).with_y(0.0);
+                    let chaos = f32::from(round % 3) * 0.5;
+                    assert!(holds(bounds, &model, |beam| {
+                        let load = (wind + chaos * odd(&mut random)).normalize_or_zero() * pressure;
+                        load.reject_from_normalized(beam.direction) * (SLOPE_TIP * beam.gain)
+                    }));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_stronger_wind_has_a_larger_box_up_to_that_of_the_limit() {
+        let model = TreeModel::bake(&Species::default(), 120.0, 1);
+        let size = |pressure: f32| {
+            let SwayBounds { min, max } = model.bounds_under(pressure);
+            max - min
+        };
+        let sizes = [0.0, 30.0, 300.0, 3e4, f32::INFINITY].map(size);
+        assert!(sizes.windows(2).all(|pair| pair[0].cmple(pair[1]).all()), "{sizes:?}");
+        assert!(sizes[0].x < 0.8 * sizes[4].x, "{sizes:?}");
+        assert_eq!(model.bounds_under(f32::INFINITY), model.bounds);
+        assert_eq!(model.bounds_under(f32::NAN), model.bounds);
+    }
+}
