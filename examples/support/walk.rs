@@ -5,9 +5,7 @@
 #![allow(dead_code)]
 
 use crate::capture;
-use bevy::{
-    camera::visibility::NoFrustumCulling, light::ShadowFilteringMethod, prelude::*,
-};
+use bevy::{camera::visibility::NoFrustumCulling, light::ShadowFilteringMethod, prelude::*};
 use bevy_windwood::{
     forest::ForestCulling,
     prelude::*,

@@ -119,7 +119,7 @@ pub(super) fn measure_species(
             commands.entity(entity).insert(Sights::default());
             continue;
         };
-        let exposed_anew = exposure.as_ref().is_some_and(|exposure| exposure.is_changed());
+        let exposed_anew = exposure.as_ref().is_some_and(DetectChanges::is_changed);
         if !grove.is_changed() && !exposed_anew && !sights.is_added() && !forest.is_added() {
             continue;
         }

@@ -64,8 +64,10 @@ pub(super) const MOST_LEVELS: usize = 3;
 pub(super) const NOWHERE_M: f32 = 1e30;
 /// Levels are looked over again when a viewer has moved so far, m.
 const STEP_M: f32 = 0.5;
-/// By so much more than the fade itself a tree wears both levels, m: viewers move on before it changes.
-const SLACK_M: f32 = 3.0;
+/// By so much more than the fade itself a tree wears both levels, m, for viewers move on before it changes: a share of the
+/// distance, and no less than a fast one makes between two looks.
+const SLACK_M: [f32; 2] = [1.0, 3.0];
+const SLACK_SHARE: f32 = 0.05;
 /// `LADDER` of `shaders/beam.wgsl`.
 const LADDER: f32 = 1.17;
 /// The lens that is assumed where there is no camera.
@@ -112,10 +114,10 @@ impl Ladder {
             let end_m = self.ends[usize::from(first)] * height_m;
             let both = Levels { first, both: true, gone: false };
             let margin = if before == Some(both) { self.margin } else { 0.0 };
-            if distance_m < (end_m * (1.0 - self.fade) - SLACK_M) * (1.0 - margin) {
+            if distance_m < (end_m * (1.0 - self.fade) - slack_m(end_m)) * (1.0 - margin) {
                 return Levels { first, ..Levels::default() };
             }
-            if distance_m < (end_m * (1.0 + self.fade) + SLACK_M) * (1.0 + margin) {
+            if distance_m < (end_m * (1.0 + self.fade) + slack_m(end_m)) * (1.0 + margin) {
                 return both;
             }
         }
@@ -127,8 +129,13 @@ impl Ladder {
         let levels = self.choose(distance_m, height_m, count, before);
         let end_m = self.cards_from_m.min(self.ends[MOST_LEVELS - 1] * height_m * LADDER);
         let margin = if before.is_some_and(|before| before.gone) { -self.margin } else { 0.0 };
-        Levels { gone: distance_m > (end_m * (1.0 + self.fade) + SLACK_M) * (1.0 + margin), ..levels }
+        Levels { gone: distance_m > (end_m * (1.0 + self.fade) + slack_m(end_m)) * (1.0 + margin), ..levels }
     }
+}
+
+fn slack_m(end_m: f32) -> f32 {
+    let [least, most] = SLACK_M;
+    (SLACK_SHARE * end_m).clamp(least, most)
 }
 
 /// From where trees are looked at, and where their levels end.

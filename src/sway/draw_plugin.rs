@@ -80,7 +80,16 @@ impl Plugin for SwayDrawPlugin {
                         .before(VisibilitySystems::CheckVisibility),
                 ),
             );
-        let dress = timed!(app, look_about, find_exposure, start_tailoring, finish_tailoring, fit_boxes, choose_levels, dress_trees);
+        let dress = timed!(
+            app,
+            look_about,
+            find_exposure,
+            start_tailoring,
+            finish_tailoring,
+            fit_boxes,
+            choose_levels,
+            dress_trees
+        );
         let dress =
             dress.chain().after(receive_models).in_set(WindwoodSystems::Grow).run_if(resource_exists::<DrawPath>);
         let upload = timed!(app, upload_winds, place_trees, see_trees, upload_frame);
@@ -110,6 +119,11 @@ impl Plugin for SwayDrawPlugin {
         // Poses have two halves, and half as many again are kept ready.
         let largest = device.limits().max_storage_buffer_binding_size.min(device.limits().max_buffer_size);
         let pose_limit = u32::try_from(largest / (3 * POSE_BYTES as u64)).unwrap_or(u32::MAX);
-        app.insert_resource(Stand::new(pose_limit)).insert_resource(DrawPath { sways, culls_on_gpu, pose_limit, table_limit_bytes: largest });
+        app.insert_resource(Stand::new(pose_limit)).insert_resource(DrawPath {
+            sways,
+            culls_on_gpu,
+            pose_limit,
+            table_limit_bytes: largest,
+        });
     }
 }

@@ -40,11 +40,7 @@ impl TreeLights {
 }
 
 /// Finds out which lights there are.
-pub(super) fn find_lights(
-    lighting: Res<TreeLighting>,
-    suns: Query<&DirectionalLight>,
-    mut lights: ResMut<TreeLights>,
-) {
+pub(super) fn find_lights(lighting: Res<TreeLighting>, suns: Query<&DirectionalLight>, mut lights: ResMut<TreeLights>) {
     let shadows = *lighting == TreeLighting::SunOnly && suns.iter().any(|sun| sun.shadow_maps_enabled);
     lights.set_if_neq(TreeLights { lighting: *lighting, shadows });
 }

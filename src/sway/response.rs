@@ -2,8 +2,8 @@
 
 use crate::{
     dynamics::{
-        load_basis::{LoadBasis, LoadBasisKind},
         direction_map::LoadCoefficients,
+        load_basis::{LoadBasis, LoadBasisKind},
         response::{FrequencyClasses, ResponseTable},
     },
     wind::{REFERENCE_HEIGHT_M, WindField, cross_flow_pressure},

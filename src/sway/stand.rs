@@ -356,13 +356,19 @@ mod tests {
         let (mut stand, id) = stand(10_000);
         let other = AssetId::Uuid { uuid: AssetId::<TreeModel>::INVALID_UUID };
         stand.add_model(other, std::iter::repeat_n(BeamRow::default(), 20));
-        let trees: Vec<Standing> = (0..300).filter_map(|tree| stand.admit(if tree % 3 == 0 { other } else { id })).collect();
+        let trees: Vec<Standing> =
+            (0..300).filter_map(|tree| stand.admit(if tree % 3 == 0 { other } else { id })).collect();
         for round in 0..7 {
             for (number, tree) in trees.iter().enumerate() {
                 stand.see(*tree, (number + round) % 4 != 0);
             }
         }
-        let mut taken: Vec<(u32, u32)> = stand.rows().iter().filter(|row| row.beam_count > 0).map(|row| (row.first_pose, row.beam_count + 1)).collect();
+        let mut taken: Vec<(u32, u32)> = stand
+            .rows()
+            .iter()
+            .filter(|row| row.beam_count > 0)
+            .map(|row| (row.first_pose, row.beam_count + 1))
+            .collect();
         taken.sort_unstable();
         assert_eq!(taken.len(), 225);
         assert!(taken.windows(2).all(|pair| pair[0].0 + pair[0].1 <= pair[1].0));

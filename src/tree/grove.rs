@@ -103,8 +103,8 @@ impl Grove {
             return;
         }
         let species = entry.species.clone();
-        let task =
-            AsyncComputeTaskPool::get().spawn(async move { bake_variants(&species, age_of_step(&species.age, step)) });
+        let task = AsyncComputeTaskPool::get()
+            .spawn(async move { bake_variants(&species, age_of_step(&species.age, step)).collect() });
         self.baking.push(Baking { id, step, generation, task });
     }
 }
@@ -153,10 +153,11 @@ pub(super) fn adopt_species(
     }
 }
 
-/// Bakes all variants of a species at an age, years; each has its own seed, drawn from the species' own.
-pub fn bake_variants(species: &Species, age_years: f32) -> Vec<TreeModel> {
+/// Bakes the variants of a species at an age, years, one by one as they are asked for; each has its own seed, drawn from the
+/// species' own.
+pub fn bake_variants(species: &Species, age_years: f32) -> impl Iterator<Item = TreeModel> {
     let mut seeds = Xoshiro256PlusPlus::seed_from_u64(species.seed);
-    (0..species.variants).map(|_| TreeModel::bake(species, age_years, seeds.next_u64())).collect()
+    (0..species.variants).map(move |_| TreeModel::bake(species, age_years, seeds.next_u64()))
 }
 
 /// Takes over what has been baked.

@@ -16,10 +16,12 @@ const SPECIES: [&str; 8] =
 /// Painters' crowns: a few large parts on a stiff frame, which from one frame to the next stand as good as still. Their changes
 /// are told apart, for beside next to no motion any change is large.
 const PAINTED: [&str; 2] = ["billows", "impression_summer"];
-/// Moments of a fade at which a step of it is compared with the wind, as shares of its way.
+/// Moments of a fade at which a frame of it is compared with the wind, as shares of its way.
 const MOMENTS: [f32; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
-/// A step of the dither is a 16th of the fade, which takes a fifth of the distance.
-const STEP: f32 = 0.2 / 16.0;
+/// A step of the dither is a 1024th of the fade, which takes a fifth of the distance.
+const STEP: f32 = 0.2 / 1024.0;
+/// What a walker makes in a frame, m: 1.5 m/s at 60 frames/s.
+const PACE_M: f32 = 0.025;
 
 /// What is found of one change.
 #[derive(Default, Clone, Copy)]
@@ -31,7 +33,7 @@ struct Found {
     outline: f64,
     /// How its mean colour differs, of 255.
     colour: f64,
-    /// The greatest difference of two frames while it fades, over the wind's own from frame to frame.
+    /// The greatest difference of two frames of a walker while it fades, over the wind's own from frame to frame.
     pop: f64,
     /// The difference if it changed at once, over the wind's own.
     abrupt: f64,
@@ -72,7 +74,12 @@ pub fn run(picture: &Path, only: Option<&str>) -> Report {
         Err(error) => eprintln!("{}: {error}", picture.display()),
     }
     let mut report = Report::default();
-    report.at_most("pop_ratio_worst", worst.pop, 1.0, "a step of a fade over the wind's own motion in a frame");
+    report.at_most(
+        "pop_ratio_worst",
+        worst.pop,
+        1.0,
+        "what a fade changes in a walker's frame over what the wind does",
+    );
     report.tell("abrupt_ratio_worst", worst.abrupt, "the same if levels changed at once");
     report.tell("pop_ratio_painted", worst_painted.pop, "of painters' crowns, which hardly move");
     report.tell("coverage_difference_painted", worst_painted.coverage, "painters' crowns");
@@ -103,12 +110,14 @@ fn ours(stand: &mut Stand, change: usize, sheet: &mut Sheet) -> Found {
     sheet.add(&full, stand.crop());
     sheet.add(&coarser, stand.crop());
     let wind = difference(&full, &later);
+    // What changes in a frame is a step of the dither at least.
+    let step = STEP.max(PACE_M / stand.distance_m());
     let mut pop = 0.0_f64;
     for moment in MOMENTS {
         // A card comes before its tree goes: both fades lie one after the other.
         let (from, way) = if change == 2 { (0.78, 0.6) } else { (0.9, 0.2) };
         let at = from + way * moment;
-        let [before, after] = [at, at + STEP].map(|share| stand.shoot(Shot::Fading(change, share)));
+        let [before, after] = [at, at + step].map(|share| stand.shoot(Shot::Fading(change, share)));
         pop = pop.max(difference(&before, &after) / wind);
     }
     Found { pop, abrupt: difference(&finer, &coarser) / wind, ..compare(&full, &coarser, stand.tenth_px()) }

@@ -70,6 +70,8 @@ impl Stand {
         world.insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
         world.insert_resource(GlobalAmbientLight { brightness: 700.0, ..default() });
         world.insert_resource(Wind { speed: 8.0, ..default() });
+        // There is but a sun.
+        world.insert_resource(TreeLighting::SunOnly);
         world.resource_mut::<LevelOfDetail>().changes_per_frame = 1_000_000;
         let plan = plan(species, mature_years, height_m);
         let plan = world.resource_mut::<Assets<ForestPlan>>().add(plan);
@@ -102,11 +104,16 @@ impl Stand {
     /// Moves the camera to where trees have that size.
     pub fn stand_back(&mut self, size_px: f32) {
         self.size_px = size_px;
-        let distance_m = self.height_m * HEIGHT as f32 / (2.0 * (0.5 * FOV_RAD).tan() * size_px);
+        let distance_m = self.distance_m();
         let middle_m = 0.48 * self.height_m;
         if let Some(mut at) = self.app.world_mut().get_mut::<Transform>(self.camera) {
             *at = Transform::from_xyz(0.0, middle_m, distance_m).looking_at(Vec3::Y * middle_m, Vec3::Y);
         }
+    }
+
+    /// From the camera to the trees, m.
+    pub fn distance_m(&self) -> f32 {
+        self.height_m * HEIGHT as f32 / (2.0 * (0.5 * FOV_RAD).tan() * self.size_px)
     }
 
     /// A tenth of a tree in the picture, pixels.

@@ -9,7 +9,7 @@ use crate::{
     forest::cells::ForestCells,
     lod::{Lean, LevelSettings, Scene, ViewAtlas},
     sway::{DrawPath, LitAsTrees, StandTables, TreeLights},
-    tree::{Species, bake_variants, growth::age::Age, painting::paint},
+    tree::{Species, TreeModel, bake_variants, growth::age::Age, painting::paint},
 };
 use bevy::{
     platform::collections::HashMap,
@@ -57,8 +57,7 @@ impl FarLooks {
 
 fn bake(species: Species) -> Baked {
     let textures = paint(&species);
-    let mut models = bake_variants(&species, species.age.mature_years);
-    models.truncate(MOST_TREES as usize);
+    let models: Vec<TreeModel> = bake_variants(&species, species.age.mature_years).take(MOST_TREES as usize).collect();
     let scenes: Vec<Scene> = models.iter().map(|model| Scene::new(&species, model, &textures)).collect();
     let atlas = ViewAtlas::bake(&scenes, &LevelSettings::default().views);
     let leans = scenes.iter().zip(&models).map(|(scene, model)| Lean::of(scene, model)).collect();

@@ -4,8 +4,8 @@
 #import bevy_pbr::forward_io::{FragmentOutput, VertexOutput}
 #import bevy_pbr::mesh_view_bindings::view
 #import bevy_pbr::pbr_bindings::{base_color_sampler, base_color_texture, material}
-#import bevy_pbr::pbr_functions::{alpha_discard, main_pass_post_lighting_processing, visibility_range_dither}
-#import bevy_windwood::{light, surface}
+#import bevy_pbr::pbr_functions::{alpha_discard, main_pass_post_lighting_processing}
+#import bevy_windwood::{level, light, surface}
 
 #ifdef WINDWOOD_LEAVES
 #import bevy_windwood::{leaf, season}
@@ -25,7 +25,9 @@
 
 @fragment
 fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
-    visibility_range_dither(in.position, in.visibility_range_dither);
+    if level::leaves_out(in.position, in.visibility_range_dither) {
+        discard;
+    }
     let texel = textureSampleBias(base_color_texture, base_color_sampler, in.uv, view.mip_bias);
     var colour = in.color * material.base_color * texel;
 #ifdef WINDWOOD_ENVELOPE

@@ -3,9 +3,8 @@
 
 #import bevy_pbr::mesh_view_bindings::view
 #import bevy_pbr::pbr_bindings::{base_color_sampler, base_color_texture, material}
-#import bevy_pbr::pbr_functions
 #import bevy_pbr::prepass_io
-#import bevy_windwood::written
+#import bevy_windwood::{level, written}
 
 #ifdef WINDWOOD_LEAVES
 #import bevy_windwood::{leaf, season}
@@ -16,7 +15,9 @@
 #endif
 
 fn cut_out(in: prepass_io::VertexOutput) {
-    pbr_functions::visibility_range_dither(in.position, in.visibility_range_dither);
+    if level::leaves_out(in.position, in.visibility_range_dither) {
+        discard;
+    }
 #ifdef VERTEX_UVS_A
 #ifdef WINDWOOD_LEAVES
     let texel = textureSampleBias(base_color_texture, base_color_sampler, in.uv, view.mip_bias);

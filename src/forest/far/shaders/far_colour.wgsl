@@ -1,14 +1,16 @@
 // What a far tree looks like: its views, in the colours of the season, lit by their normals.
 
 #import bevy_pbr::forward_io::{FragmentOutput, VertexOutput}
-#import bevy_pbr::pbr_functions::{main_pass_post_lighting_processing, visibility_range_dither}
-#import bevy_windwood::{beam, far, light, season, surface}
+#import bevy_pbr::pbr_functions::main_pass_post_lighting_processing
+#import bevy_windwood::{beam, far, level, light, season, surface}
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(103) var<storage, read> frame: beam::Frame;
 
 @fragment
 fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
-    visibility_range_dither(in.position, in.visibility_range_dither);
+    if level::leaves_out(in.position, in.visibility_range_dither) {
+        discard;
+    }
     let seen = far::seen_at(in.color.a, in.uv, in.color.xyz);
     let tint = in.uv_b.y;
     // Leaves come and go, and turn, at a place of the crown's own time.

@@ -1,14 +1,14 @@
 // What the prepass and the shadow pass show of a far tree.
 
-#import bevy_pbr::pbr_functions::visibility_range_dither
 #import bevy_pbr::prepass_io
-#import bevy_windwood::written
-#import bevy_windwood::{beam, far, season}
+#import bevy_windwood::{beam, far, level, season, written}
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(103) var<storage, read> frame: beam::Frame;
 
 fn cut_out(in: prepass_io::VertexOutput) {
-    visibility_range_dither(in.position, in.visibility_range_dither);
+    if level::leaves_out(in.position, in.visibility_range_dither) {
+        discard;
+    }
     let seen = far::seen_at(in.color.a, in.uv, in.color.xyz);
     let rank = far::leaf_rank(in.color.xyz);
     let state = season::leaves(frame.year, in.uv_b.y - 0.5, rank);
