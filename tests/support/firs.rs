@@ -1,6 +1,6 @@
 //! A row of firs before a camera: what became of them on a device that can do less than ours.
 
-use super::{headless_app, render_frame, update_until};
+use super::{headless_app, read_every_frame, render_frame, update_until};
 use bevy::{
     camera::RenderTarget,
     prelude::*,
@@ -11,7 +11,7 @@ use bevy::{
 };
 use bevy_windwood::{
     prelude::*,
-    sway::{DrawPath, Foliage},
+    sway::{DrawPath, Foliage, StandTables},
 };
 use std::{
     sync::{Arc, Mutex},
@@ -26,8 +26,10 @@ const BACKGROUND: Color = Color::srgb(1.0, 0.0, 1.0);
 pub struct Outcome {
     /// What the device was found to be able to do.
     pub path: DrawPath,
-    /// Trees whose wood, and whose leaves, sway.
+    /// Trees whose wood, and whose leaves, have materials that sway.
     pub swaying: [usize; 2],
+    /// Trees that are posed.
+    pub posed: usize,
     /// Share of the picture that is not background.
     pub covered: f32,
 }
@@ -49,12 +51,22 @@ pub fn draw_firs(limits: WgpuLimits) -> Outcome {
         trees == TREES && world.resource::<ActiveSway>().is_ready()
     });
     assert!(dressed, "the trees did not get ready");
+    let path = *app.world().resource::<DrawPath>();
+    let rows = path.sways.then(|| {
+        let trees = app.world().resource::<StandTables>().trees.clone();
+        read_every_frame(app.world_mut(), trees)
+    });
     let picture = photograph(&mut app, &target);
+    let posed = rows.map_or(0, |rows| {
+        let rows = rows.lock().expect("nobody panics with it").take().expect("the rows come back");
+        // `TreeRow` of `beam.wgsl` has 48 bytes; its number of beams is the tenth of its words.
+        rows.chunks_exact(48).filter(|row| row[36..40] != [0; 4]).count()
+    });
     let world = app.world_mut();
     type Still = With<MeshMaterial3d<StandardMaterial>>;
     let wood = TREES - world.query_filtered::<(), (With<Tree>, Still)>().iter(world).count();
     let leaves = TREES - world.query_filtered::<(), (With<Foliage>, Still)>().iter(world).count();
-    Outcome { path: *world.resource::<DrawPath>(), swaying: [wood, leaves], covered: covered_share(&picture) }
+    Outcome { path, swaying: [wood, leaves], posed, covered: covered_share(&picture) }
 }
 
 fn camera_on_a_picture(app: &mut App) -> Handle<Image> {

@@ -13,8 +13,8 @@ use std::path::Path;
 /// Species of all kinds of growth.
 const SPECIES: [&str; 8] =
     ["oak", "fir", "birch", "norway_spruce", "scots_pine", "poplar", "billows", "impression_summer"];
-/// Painters' crowns: a few large parts on a stiff frame, which from one frame to the next stand as good as still. Their changes
-/// are told apart, for beside next to no motion any change is large.
+/// Painters' crowns: a few large parts on a stiff frame, which from one frame to the next stand as good as still. But for the
+/// pop, their changes are told apart: beside next to no motion any change at once is large.
 const PAINTED: [&str; 2] = ["billows", "impression_summer"];
 /// Moments of a fade at which a frame of it is compared with the wind, as shares of its way.
 const MOMENTS: [f32; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
@@ -76,12 +76,12 @@ pub fn run(picture: &Path, only: Option<&str>) -> Report {
     let mut report = Report::default();
     report.at_most(
         "pop_ratio_worst",
-        worst.pop,
+        if worst.pop.is_nan() { worst.pop } else { worst.pop.max(worst_painted.pop) },
         1.0,
         "what a fade changes in a walker's frame over what the wind does",
     );
     report.tell("abrupt_ratio_worst", worst.abrupt, "the same if levels changed at once");
-    report.tell("pop_ratio_painted", worst_painted.pop, "of painters' crowns, which hardly move");
+    report.tell("abrupt_ratio_painted", worst_painted.abrupt, "of painters' crowns, which hardly move");
     report.tell("coverage_difference_painted", worst_painted.coverage, "painters' crowns");
     report.tell("colour_difference_painted", worst_painted.colour, "painters' crowns");
     report.tell("coverage_difference_worst", worst.coverage, "of a lower level, as a share of the full tree's");
