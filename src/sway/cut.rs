@@ -181,3 +181,16 @@ fn mesh(
         .with_inserted_attribute(ATTRIBUTE_SWAY, sway)
         .with_inserted_indices(Indices::U32(indices))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tree::MOST_ENLARGED;
+
+    #[test]
+    fn boxes_have_room_for_the_leaves_of_thinned_trees() {
+        for Reduction { leaf_share, .. } in LevelSettings::default().reductions {
+            assert!(leaf_share.sqrt().recip() < MOST_ENLARGED, "{leaf_share}");
+        }
+    }
+}

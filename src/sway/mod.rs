@@ -36,6 +36,8 @@ mod mend;
 #[cfg(feature = "render")]
 mod outfits;
 #[cfg(feature = "render")]
+mod ranges;
+#[cfg(feature = "render")]
 mod rouse;
 #[cfg(feature = "render")]
 mod rows;

@@ -6,6 +6,7 @@
 
 use super::{
     draw::{DrawPath, Worn},
+    ranges::Ranges,
     rows::{BeamRow, CHUNK, POSE_BYTES, TreeRow, pose_chunk},
 };
 use crate::tree::{Tree, TreeModel};
@@ -225,33 +226,6 @@ impl Stand {
 /// Trees that one dispatch can hold in its second dimension (the least that WebGPU guarantees).
 const ROW_LIMIT: u32 = 65_535;
 
-/// Hands out ranges of a table that keep their places, and again what was given back, for ranges of the same length.
-#[derive(Default)]
-struct Ranges {
-    end: u32,
-    free: HashMap<u32, Vec<u32>>,
-}
-
-impl Ranges {
-    fn has_room(&self, length: u32, limit: u32) -> bool {
-        let reusable = self.free.get(&length).is_some_and(|free| !free.is_empty());
-        reusable || self.end.checked_add(length).is_some_and(|end| end <= limit)
-    }
-
-    fn take(&mut self, length: u32) -> u32 {
-        if let Some(first) = self.free.get_mut(&length).and_then(Vec::pop) {
-            return first;
-        }
-        let first = self.end;
-        self.end += length;
-        first
-    }
-
-    fn give_back(&mut self, first: u32, length: u32) {
-        self.free.entry(length).or_default().push(first);
-    }
-}
-
 pub(super) fn dismiss_tree(removed: On<Remove, Standing>, trees: Query<&Standing>, mut stand: ResMut<Stand>) {
     if let Ok(standing) = trees.get(removed.entity) {
         stand.dismiss(*standing);
@@ -292,17 +266,6 @@ pub(super) fn see_trees(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn ranges_that_were_given_back_are_used_again_for_their_length() {
-        let mut ranges = Ranges::default();
-        let (a, b) = (ranges.take(10), ranges.take(4));
-        assert_eq!((a, b, ranges.end), (0, 10, 14));
-        ranges.give_back(a, 10);
-        assert_eq!(ranges.take(4), 14);
-        assert_eq!(ranges.take(10), 0);
-        assert!(!ranges.has_room(10, 20) && ranges.has_room(2, 20));
-    }
 
     const BEAMS: u32 = 7;
 

@@ -104,8 +104,11 @@ pub(super) fn limit_bounds(beams: &[BeamDynamics], reaches_m: &[f32]) -> SwayBou
     SwayBounds { min: bounds.min - margin, max: bounds.max + margin }
 }
 
+/// Where a tree is drawn with fewer leaves, those that are left are larger, at most by this factor.
+pub(crate) const MOST_ENLARGED: f32 = 2.3;
+
 /// For each beam the greatest distance of what is bound to it from the place on its axis that carries it, m; a leaf may
-/// turn anywhere about its anchor.
+/// turn anywhere about its anchor, and be enlarged about it.
 pub(super) fn reaches_m(beams: &[BeamDynamics], wood: &WoodVertices, leaves: &LeafVertices) -> Vec<f32> {
     let mut reaches = vec![0.0_f32; beams.len()];
     let mut reach = |sway: &[f32; 4], at: Vec3, beyond_m: f32| {
@@ -119,7 +122,7 @@ pub(super) fn reaches_m(beams: &[BeamDynamics], wood: &WoodVertices, leaves: &Le
     }
     for (sway, (position, anchor)) in leaves.sway.iter().zip(leaves.positions.iter().zip(&leaves.anchor)) {
         let anchor = Vec3::from_slice(anchor);
-        reach(sway, anchor, Vec3::from_array(*position).distance(anchor));
+        reach(sway, anchor, MOST_ENLARGED * Vec3::from_array(*position).distance(anchor));
     }
     reaches
 }

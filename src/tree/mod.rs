@@ -36,6 +36,8 @@ pub use plugin::TreePlugin;
 pub use season::Season;
 pub use species::{Species, SpeciesError};
 
+#[cfg(all(test, feature = "render"))]
+pub(crate) use bounds::MOST_ENLARGED;
 #[cfg(feature = "render")]
 pub(crate) use grove::receive_models;
 
