@@ -19,7 +19,7 @@ const TREES: [u32; 4] = [10, 100, 1000, 10_000];
 /// A frame's time at a place is the mean of so many, or of as many as there are in so long: short ones are easily disturbed.
 const FRAMES_AT_A_PLACE: u32 = 8;
 const LONG_ENOUGH: Duration = Duration::from_millis(600);
-/// No curve is measured longer than this at one number of trees, once everything stands; but two frames always are.
+/// No curve is measured longer than this at one number of trees, once everything stands; but two places always are.
 const PATIENCE: Duration = Duration::from_secs(25);
 
 /// A curve of the figure.

@@ -63,7 +63,7 @@ struct Options {
     /// Writes the numbers to this file as flat JSON.
     #[arg(long)]
     json: Option<PathBuf>,
-    /// `figure9`: frames along the path for each curve and number of trees; `grid`: frames of each wood.
+    /// `figure9`: places along the path for each curve and number of trees; `grid`: frames of each wood.
     #[arg(long, default_value_t = 36, value_parser = clap::value_parser!(u32).range(2..=10_800))]
     frames: u32,
     /// `figure9`, `grid`: the greatest number of trees.

@@ -103,14 +103,9 @@ fn strongest_pressure(basis: &LoadBasis, table: &ResponseTable) -> f32 {
         .flat_map(|row| coordinates().map(move |column| row * size + column))
         .map(|texel| LoadCoefficients::from_texel(&basis.map().texels()[texel]))
         .collect();
-    let most = |part: fn(&LoadCoefficients) -> f32| loads.iter().map(part).fold(0.0, f32::max);
-    let mean = most(|load| load.mean.length());
-    let moving = Vec4::new(
-        most(|load| load.moving[0].length()),
-        most(|load| load.moving[1].length()),
-        most(|load| load.moving[2].length()),
-        most(|load| load.moving[3].length()),
-    );
+    let mean = loads.iter().map(|load| load.mean.length()).fold(0.0, f32::max);
+    let moving = |k: usize| loads.iter().map(|load| load.moving[k].length()).fold(0.0, f32::max);
+    let moving = Vec4::from_array(std::array::from_fn(moving));
     let mut strongest = mean;
     for signals in &table.values {
         // Few samples can be stronger than the strongest so far, and only those are looked at in every direction.

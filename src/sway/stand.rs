@@ -172,12 +172,11 @@ impl Stand {
     fn relieve(&mut self) -> bool {
         if self.is_short && self.has_more {
             self.is_short = false;
-            let waiting = |seat: &Seat| seat.is_seen && seat.poses.is_none();
-            (0..self.seats.len()).for_each(|row| {
-                if waiting(&self.seats[row]) {
+            for row in 0..self.seats.len() {
+                if self.seats[row].is_seen {
                     self.pose(row);
                 }
-            });
+            }
         }
         self.has_more = false;
         self.is_short
@@ -223,7 +222,7 @@ impl Stand {
     }
 }
 
-/// Trees that one dispatch can hold in its second dimension (the least that WebGPU guarantees).
+/// Rows that the 16 bits of a tag, and of a chunk of poses, can name.
 const ROW_LIMIT: u32 = 65_535;
 
 pub(super) fn dismiss_tree(removed: On<Remove, Standing>, trees: Query<&Standing>, mut stand: ResMut<Stand>) {

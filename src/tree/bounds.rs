@@ -21,6 +21,15 @@ pub struct SwayBounds {
 }
 
 impl SwayBounds {
+    /// Before anything is included but the tree's foot.
+    const FOOT: Self = Self { min: Vec3::ZERO, max: Vec3::ZERO };
+
+    /// Grows to hold all within `reach_m` of a place.
+    fn include(&mut self, place: Vec3, reach_m: f32) {
+        self.min = self.min.min(place - reach_m);
+        self.max = self.max.max(place + reach_m);
+    }
+
     /// What both boxes have in common.
     pub(super) fn intersection(self, other: Self) -> Self {
         Self { min: self.min.max(other.min), max: self.max.min(other.max) }
@@ -50,7 +59,7 @@ impl Carried {
 /// The box around all that is bound to the beams while no load on them is above that pressure, m²/s².
 pub(super) fn bounds_under(beams: &[BeamDynamics], reaches_m: &[f32], pressure: f32) -> SwayBounds {
     let pressure = if pressure.is_nan() { f32::MAX } else { pressure.clamp(0.0, f32::MAX) };
-    let mut bounds = SwayBounds { min: Vec3::ZERO, max: Vec3::ZERO };
+    let mut bounds = SwayBounds::FOOT;
     let mut carried: Vec<Carried> = Vec::with_capacity(beams.len());
     for (beam, reach_m) in beams.iter().zip(reaches_m) {
         let free_rad = SLOPE_TIP * beam.gain * pressure;
@@ -64,8 +73,7 @@ pub(super) fn bounds_under(beams: &[BeamDynamics], reaches_m: &[f32], pressure: 
         };
         for s in [0.0, 0.5, 1.0] {
             let (place, moved_m, _) = own.at(beam, s);
-            bounds.min = bounds.min.min(place - (moved_m + reach_m));
-            bounds.max = bounds.max.max(place + (moved_m + reach_m));
+            bounds.include(place, moved_m + reach_m);
         }
         carried.push(own);
     }
@@ -83,7 +91,7 @@ const HURRICANE_RAD: f32 = 1e3;
 
 /// Bends every beam to its limit into each of a ring of directions, and takes the box around all that is bound to it.
 pub(super) fn limit_bounds(beams: &[BeamDynamics], reaches_m: &[f32]) -> SwayBounds {
-    let mut bounds = SwayBounds { min: Vec3::ZERO, max: Vec3::ZERO };
+    let mut bounds = SwayBounds::FOOT;
     let mut poses = vec![BeamPose::REST; beams.len()];
     for step in 0..=BOUND_DIRECTIONS {
         let azimuth = step as f32 / BOUND_DIRECTIONS as f32 * std::f32::consts::TAU;
@@ -95,8 +103,7 @@ pub(super) fn limit_bounds(beams: &[BeamDynamics], reaches_m: &[f32]) -> SwayBou
         for ((beam, pose), reach_m) in beams.iter().zip(&poses).zip(reaches_m) {
             for s in BOUND_PLACES {
                 let (carried, _) = pose.carry(beam, s, beam.base + beam.direction * (beam.length_m * s));
-                bounds.min = bounds.min.min(carried - *reach_m);
-                bounds.max = bounds.max.max(carried + *reach_m);
+                bounds.include(carried, *reach_m);
             }
         }
     }

@@ -76,7 +76,7 @@ pub fn run(picture: &Path, only: Option<&str>) -> Report {
     let mut report = Report::default();
     report.at_most(
         "pop_ratio_worst",
-        if worst.pop.is_nan() { worst.pop } else { worst.pop.max(worst_painted.pop) },
+        worst.worse(worst_painted).pop,
         1.0,
         "what a fade changes in a walker's frame over what the wind does",
     );
