@@ -1,14 +1,9 @@
-//! From species to models, in the background, and from models to trees.
+//! From species to models, in the background.
 //!
 //! Trees of a species share models: one for each variant, at each of a ladder of ages. Only the ages that are asked for
 //! are baked.
 
-use super::{
-    components::{Grown, Tree},
-    growth::age::Age,
-    model::TreeModel,
-    species::Species,
-};
+use super::{growth::age::Age, model::TreeModel, species::Species};
 use bevy::{
     platform::collections::HashMap,
     prelude::*,
@@ -95,7 +90,7 @@ impl Grove {
     }
 
     /// Starts baking a stage, unless it is there or on its way.
-    fn bake(&mut self, id: AssetId<Species>, step: i32) {
+    pub(super) fn bake(&mut self, id: AssetId<Species>, step: i32) {
         let Some(entry) = self.species.get(&id) else { return };
         let generation = entry.generation;
         let is_there = entry.stages.get(&step).is_some_and(|stage| stage.generation == generation);
@@ -110,7 +105,7 @@ impl Grove {
 }
 
 /// The step of the ladder nearest to an age; the mature age is step 0.
-fn step_of_age(age: &Age, years: Option<f32>) -> i32 {
+pub(super) fn step_of_age(age: &Age, years: Option<f32>) -> i32 {
     let years = years.filter(|years| years.is_finite()).unwrap_or(age.mature_years);
     let years = years.clamp(Age::YOUNGEST_YEARS, age.oldest_years);
     ((years / age.mature_years).ln() / AGE_STEP.ln()).round() as i32
@@ -181,45 +176,6 @@ pub(crate) fn receive_models(
     });
 }
 
-/// Gives trees that are new, were changed or are of a stage that was baked anew their model, and asks for those models
-/// that are not there yet.
-pub(super) fn grow_trees(
-    mut commands: Commands,
-    mut grove: ResMut<Grove>,
-    mut baked: MessageReader<SpeciesBaked>,
-    trees: Query<(Entity, &Tree, &Transform, Option<&Grown>)>,
-    young: Query<Entity, (With<Tree>, Or<(Changed<Tree>, Without<Grown>)>)>,
-) {
-    let renewed: Vec<_> = baked.read().map(|message| (message.species, message.step)).collect();
-    let is_renewed = |tree: &Tree| {
-        let id = tree.species.id();
-        let step = || grove.get(id).map(|entry| step_of_age(&entry.species.age, tree.age_years));
-        renewed.iter().any(|(other, _)| *other == id) && step().is_some_and(|step| renewed.contains(&(id, step)))
-    };
-    let due: Vec<_> = if renewed.is_empty() {
-        young.iter().filter_map(|entity| trees.get(entity).ok()).collect()
-    } else {
-        trees.iter().filter(|(entity, tree, ..)| young.contains(*entity) || is_renewed(tree)).collect()
-    };
-    for (entity, tree, transform, grown) in due {
-        let id = tree.species.id();
-        let Some(entry) = grove.get(id) else { continue };
-        let step = step_of_age(&entry.species.age, tree.age_years);
-        let Some(stage) = entry.stages.get(&step) else {
-            grove.bypass_change_detection().bake(id, step);
-            continue;
-        };
-        let seed = tree.seed_at(transform.translation);
-        let Some(variant) = seed.checked_rem(stage.models.len() as u64).map(|variant| variant as usize) else {
-            continue;
-        };
-        let growing = Grown { model: stage.models[variant].clone(), variant, seed };
-        if grown != Some(&growing) {
-            commands.entity(entity).insert(growing);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -243,32 +199,5 @@ mod tests {
             let drawn = age_of_step(&age, step_of_age(&age, Some(years)));
             assert!((Age::YOUNGEST_YEARS..=age.oldest_years).contains(&drawn), "{years} is drawn as {drawn}");
         }
-    }
-
-    #[cfg(feature = "render")]
-    #[test]
-    fn a_tree_of_a_seed_is_the_variant_that_is_foretold() {
-        let mut app = App::new();
-        app.add_plugins((AssetPlugin::default(), TaskPoolPlugin::default()));
-        app.init_asset::<Species>().init_asset::<TreeModel>().init_resource::<Grove>().add_message::<SpeciesBaked>();
-        app.add_systems(Update, (adopt_species, receive_models, grow_trees).chain());
-        let young = Species { variants: 3, ..Species::default() };
-        let species = app.world_mut().resource_mut::<Assets<Species>>().add(young);
-        for seed in 0..20 {
-            let tree = Tree::new(species.clone()).with_seed(seed).with_age(Age::YOUNGEST_YEARS);
-            app.world_mut().spawn((tree, Transform::from_xyz(seed as f32, 0.0, 0.0)));
-        }
-        let mut grown = Vec::new();
-        for _ in 0..10_000 {
-            app.update();
-            let mut trees = app.world_mut().query::<(&Tree, &Grown)>();
-            grown = trees.iter(app.world()).filter_map(|(tree, grown)| Some((tree.seed?, grown.variant))).collect();
-            if grown.len() == 20 {
-                break;
-            }
-            std::thread::sleep(std::time::Duration::from_millis(1));
-        }
-        assert_eq!(grown.len(), 20);
-        assert!(grown.iter().all(|&(seed, variant)| Tree::variant_of(seed, 3) as usize == variant), "{grown:?}");
     }
 }

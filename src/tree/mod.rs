@@ -11,6 +11,7 @@ mod components;
 pub mod crown;
 pub mod foliage;
 mod grove;
+mod grow;
 pub mod growth;
 mod joint;
 pub mod leaf;

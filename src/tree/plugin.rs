@@ -2,7 +2,8 @@
 
 use super::{
     components::{Articulated, Beam, Leaf, Tree},
-    grove::{Grove, SpeciesBaked, adopt_species, grow_trees, receive_models},
+    grove::{Grove, SpeciesBaked, adopt_species, receive_models},
+    grow::{grow_trees, is_time_to_look, regrow_trees},
     loader::SpeciesLoader,
     model::TreeModel,
     season::Season,
@@ -29,6 +30,7 @@ impl Plugin for TreePlugin {
             .init_resource::<Grove>()
             .add_message::<SpeciesBaked>();
         let grow = timed!(app, adopt_species, receive_models, grow_trees);
-        app.add_systems(Update, grow.chain().in_set(WindwoodSystems::Grow));
+        let regrow = timed!(app, regrow_trees).run_if(is_time_to_look);
+        app.add_systems(Update, (grow.chain(), regrow).chain().in_set(WindwoodSystems::Grow));
     }
 }

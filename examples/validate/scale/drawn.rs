@@ -1,6 +1,10 @@
 //! The same flight over a million trees with a renderer: what our systems take then, with levels, tables and cards.
 
-use super::{Flight, SIDE_M, median_and_p99, plan};
+use super::{
+    Flight, SIDE_M,
+    dearest::{Dearest, median_and_p99},
+    plan,
+};
 use crate::{capture, report::Report};
 use bevy::{prelude::*, time::TimeUpdateStrategy};
 use bevy_windwood::{SystemTimes, forest::FarBlocks, prelude::*, scatter::ForestPlan};
@@ -38,12 +42,16 @@ pub fn run(report: &mut Report) -> Result<(), String> {
 
     let frame = Duration::from_secs_f64(1.0 / 60.0);
     app.insert_resource(TimeUpdateStrategy::ManualDuration(frame));
-    let mut ours_ms = Vec::new();
+    let (mut ours_ms, mut dearest) = (Vec::new(), Dearest::default());
     for _ in 0..FRAMES {
         flight.fly_on(&mut app);
         capture::step(&mut app);
-        ours_ms.push(app.world().resource::<SystemTimes>().total().as_secs_f64() * 1e3);
+        let times = app.world().resource::<SystemTimes>();
+        ours_ms.push(times.total().as_secs_f64() * 1e3);
+        dearest.note(times);
     }
+    println!("with a renderer");
+    dearest.print();
     let [median_ms, p99_ms] = median_and_p99(&ours_ms);
     report.tell("drawn_frame_ms_median_1e6", median_ms, "all our systems, with a renderer");
     report.tell("drawn_frame_ms_p99_1e6", p99_ms, "the same");

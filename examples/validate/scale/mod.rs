@@ -5,6 +5,7 @@
 //! and cards of the trees near the camera) is not in these numbers, but in those of one more flight (`drawn`). Beside it the
 //! same trees stand as plain entities that Bevy culls one by one.
 
+mod dearest;
 mod drawn;
 
 use crate::report::Report;
@@ -23,6 +24,7 @@ use bevy_windwood::{
         plan::{Area, Shape, Stock},
     },
 };
+use dearest::{Dearest, median_and_p99};
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::time::{Duration, Instant};
 
@@ -70,7 +72,7 @@ fn measure(report: &mut Report) -> Result<(), String> {
             "{stems:<9} {cell_m:>10.0} {median_ms:>11.4} {p99_ms:>11.4} {update_ms:>11.4} {update_p99_ms:>11.4} \
              {known_s:>9.1} {plain_ms:>17.3}"
         );
-        flown.print_dearest();
+        flown.dearest.print();
         medians_ms.push(median_ms);
         report.tell(plain_key, plain_ms, "a whole update with as many plain entities that Bevy culls");
         if trees < 1e6 {
@@ -122,7 +124,7 @@ struct Flown {
     /// Of each frame: all our systems, and the whole update.
     ours_ms: Vec<f64>,
     updates_ms: Vec<f64>,
-    systems_ms: Vec<(&'static str, Vec<f64>)>,
+    dearest: Dearest,
     /// From the moment at which the forest is spawned, in an app that has not yet had a frame.
     startup_s: f64,
     known_s: f64,
@@ -176,22 +178,7 @@ impl Flown {
         let times = app.world().resource::<SystemTimes>();
         self.updates_ms.push(update_ms);
         self.ours_ms.push(times.total().as_secs_f64() * 1e3);
-        if self.systems_ms.is_empty() {
-            self.systems_ms = times.iter().map(|(name, _)| (name, Vec::new())).collect();
-        }
-        for ((_, times_ms), (_, time)) in self.systems_ms.iter_mut().zip(times.iter()) {
-            times_ms.push(time.as_secs_f64() * 1e3);
-        }
-    }
-
-    /// The five systems that take most.
-    fn print_dearest(&self) {
-        let of = |(name, ms): &(&'static str, Vec<f64>)| (median_and_p99(ms), *name);
-        let mut systems: Vec<_> = self.systems_ms.iter().map(of).collect();
-        systems.sort_unstable_by(|(one, _), (other, _)| other[0].total_cmp(&one[0]));
-        for ([median_ms, p99_ms], name) in systems.into_iter().take(5) {
-            println!("  {name:<20} {median_ms:>11.4} {p99_ms:>11.4}");
-        }
+        self.dearest.note(times);
     }
 }
 
@@ -284,12 +271,4 @@ impl Flight {
             *at = self.at;
         }
     }
-}
-
-/// The values that a half, and 99 of 100, do not exceed; NaN of none.
-fn median_and_p99(values: &[f64]) -> [f64; 2] {
-    let mut sorted = values.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let last = sorted.len().saturating_sub(1) as f64;
-    [0.5, 0.99].map(|share| sorted.get((share * last).round() as usize).copied().unwrap_or(f64::NAN))
 }
