@@ -127,6 +127,14 @@ fn stream(criterion: &mut Criterion) {
         let step = |mut stream: CellStream| stream.step(&at(0.0), &empty, &mut orders);
         bencher.iter_batched(|| new(settings), step, BatchSize::SmallInput);
     });
+    let side_m = store.cell_m();
+    let wide = StreamSettings { load_m: 500.0 * side_m, keep_m: 510.0 * side_m, ..settings };
+    let all = [IVec2::splat(-600), IVec2::splat(600)];
+    group.bench_function("first_step_of_790000_cells", |bencher| {
+        let step = |mut stream: CellStream| stream.step(&at(0.0), &empty, &mut orders);
+        let new = || CellStream::new(wide, side_m, Some(all)).expect("valid settings");
+        bencher.iter_batched(new, step, BatchSize::SmallInput);
+    });
     let mut waiting = new(settings);
     waiting.step(&at(0.0), &empty, &mut orders);
     println!("{} cells wait", waiting.waiting());

@@ -2,65 +2,32 @@
 //!
 //! Within the load radius everything is wanted; what stands is kept up to the greater keep radius. Between them a viewer
 //! may go to and fro and nothing is planted twice. When a viewer has moved by a quarter of a cell, only the crescents are
-//! walked by which its discs have changed; a leap is no special case, its crescents are the whole discs. Wanted cells wait
-//! in a queue of which each step takes the nearest, those in front of a viewer first.
+//! walked by which its discs have changed; a leap is no special case, its crescents are the whole discs. Of the wanted cells
+//! each step takes the nearest, those in front of a viewer first. They are kept block by block, and a step looks into a few
+//! blocks only: what it costs hardly grows with the forest.
 
 mod disc;
+mod marks;
+mod settings;
 mod urgency;
 
 use super::{cell::Cell, store::CellStore};
-use crate::setting::{SettingError, require};
+use crate::setting::SettingError;
 use bevy::{
     math::{IVec2, Vec2, Vec3, Vec3Swizzles},
     platform::collections::HashMap,
-    reflect::Reflect,
 };
 use disc::{Disc, visit_difference};
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
+use marks::Marks;
+use std::{cmp::Ordering, collections::BTreeSet};
 use urgency::Urgency;
+
+pub use settings::StreamSettings;
 
 /// After so much of a cell's side a viewer has moved.
 const STEP: f32 = 0.25;
-/// The most cells from a viewer to the keep radius: 830,000 in all.
-const FARTHEST_CELLS: f32 = 512.0;
-
-/// How far the forest is planted about viewers, and how fast.
-#[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct StreamSettings {
-    /// Cells nearer than this to a viewer are planted. units: m, domain: 0 to `keep_m` less the side of a cell.
-    pub load_m: f32,
-    /// Cells farther than this from every viewer are dropped. units: m, domain: up to 512 cells.
-    pub keep_m: f32,
-    /// The most cells that one step orders. domain: \[1, 100000\].
-    pub plants_per_step: u32,
-    /// The most cells that are ordered and not yet delivered. domain: \[1, 100000\].
-    pub most_ordered: u32,
-    /// The most cells that one step drops. domain: \[1, 100000\].
-    pub drops_per_step: u32,
-}
-
-impl Default for StreamSettings {
-    fn default() -> Self {
-        Self { load_m: 10_000.0, keep_m: 10_500.0, plants_per_step: 64, most_ordered: 256, drops_per_step: 64 }
-    }
-}
-
-impl StreamSettings {
-    /// Checks every field, for cells with this side, m.
-    ///
-    /// # Errors
-    /// The first field outside its domain.
-    pub fn validate(&self, cell_m: f32) -> Result<(), SettingError> {
-        require("cell_m", cell_m, 8.0..=8192.0)?;
-        require("keep_m", self.keep_m, cell_m..=FARTHEST_CELLS * cell_m)?;
-        require("load_m", self.load_m, 0.0..=self.keep_m - cell_m)?;
-        require("plants_per_step", self.plants_per_step as f32, 1.0..=1e5)?;
-        require("most_ordered", self.most_ordered as f32, 1.0..=1e5)?;
-        require("drops_per_step", self.drops_per_step as f32, 1.0..=1e5)
-    }
-}
+/// So many blocks a step looks into: as many as lie in front of a viewer along a ring of 100 cells' radius.
+const BLOCKS_PER_STEP: usize = 16;
 
 /// Someone who looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,11 +86,15 @@ pub struct CellStream {
     anchors: Vec<Vec2>,
     load: Vec<Disc>,
     keep: Vec<Disc>,
-    /// All wanted cells that are neither in the store nor ordered, with their urgency; in no order.
-    waiting: Vec<(f32, IVec2)>,
+    /// All wanted cells that are neither in the store nor ordered, and some that are, which is found out when they are
+    /// looked at.
+    waiting: Marks,
     ordered: BTreeSet<(i32, i32)>,
-    /// All cells in the store that no viewer keeps.
-    leaving: Vec<IVec2>,
+    /// All cells in the store that no viewer keeps, and some that are not there.
+    leaving: Marks,
+    /// Buffers of a step: blocks of `waiting`, and the most urgent cells, with their delays.
+    blocks: Vec<(f32, IVec2)>,
+    next: Vec<(f32, IVec2)>,
 }
 
 impl CellStream {
@@ -141,9 +112,11 @@ impl CellStream {
             anchors: Vec::new(),
             load: Vec::new(),
             keep: Vec::new(),
-            waiting: Vec::new(),
+            waiting: Marks::default(),
             ordered: BTreeSet::new(),
-            leaving: Vec::new(),
+            leaving: Marks::default(),
+            blocks: Vec::new(),
+            next: Vec::new(),
         })
     }
 
@@ -159,11 +132,7 @@ impl CellStream {
             self.follow(viewpoints, there);
         }
         self.order(viewpoints, there, &mut orders.plant);
-        while orders.drop.len() < self.settings.drops_per_step as usize
-            && let Some(cell) = self.leaving.pop()
-        {
-            orders.drop.push(cell);
-        }
+        self.drop(there, &mut orders.drop);
     }
 
     /// Puts an ordered cell into the store, unless everyone has gone away from it meanwhile. Tells whether it did.
@@ -184,7 +153,7 @@ impl CellStream {
     /// Takes an order back that will not be fulfilled; the cell waits again if it is still wanted.
     pub fn give_back(&mut self, cell: IVec2) {
         if self.ordered.remove(&(cell.y, cell.x)) && self.is_in(cell, &self.load) {
-            self.waiting.push((0.0, cell));
+            self.waiting.insert(cell);
         }
     }
 
@@ -193,7 +162,7 @@ impl CellStream {
         !self.anchors.is_empty() && self.waiting.is_empty() && self.ordered.is_empty()
     }
 
-    /// Number of cells that wait to be ordered.
+    /// Number of cells that wait to be ordered; where a viewer has come back, some of them may turn out to be there.
     pub fn waiting(&self) -> usize {
         self.waiting.len()
     }
@@ -221,21 +190,19 @@ impl CellStream {
         let load = self.discs(self.settings.load_m);
         let keep = self.discs(self.settings.keep_m);
         let cell_m = f64::from(self.cell_m);
-        let is_in = |cell: IVec2, discs: &[Disc]| discs.iter().any(|disc| disc.contains(cell, cell_m));
-
-        self.waiting.retain(|(_, cell)| is_in(*cell, &load));
-        visit_difference(&load, &self.load, cell_m, bounds, |row, first, last| {
-            let cells = (first..=last).map(|column| IVec2::new(column, row));
-            self.waiting.extend(cells.filter(|&cell| !there.contains(cell)).map(|cell| (0.0, cell)));
-        });
-        self.leaving.retain(|cell| !is_in(*cell, &keep));
+        let Self { waiting, leaving, .. } = self;
+        visit_difference(&self.load, &load, cell_m, bounds, |row, first, last| waiting.remove_run(row, first, last));
+        visit_difference(&load, &self.load, cell_m, bounds, |row, first, last| waiting.insert_run(row, first, last));
+        visit_difference(&keep, &self.keep, cell_m, bounds, |row, first, last| leaving.remove_run(row, first, last));
+        visit_difference(&self.keep, &keep, cell_m, bounds, |row, first, last| leaving.insert_run(row, first, last));
         if first {
-            there.visit(|cell| self.leaving.extend((!is_in(cell, &keep)).then_some(cell)));
+            let kept = |cell| keep.iter().any(|disc| disc.contains(cell, cell_m));
+            there.visit(|cell| {
+                if !kept(cell) {
+                    leaving.insert(cell);
+                }
+            });
         }
-        visit_difference(&self.keep, &keep, cell_m, bounds, |row, first, last| {
-            let cells = (first..=last).map(|column| IVec2::new(column, row));
-            self.leaving.extend(cells.filter(|&cell| there.contains(cell)));
-        });
         (self.load, self.keep) = (load, keep);
     }
 
@@ -245,34 +212,63 @@ impl CellStream {
         self.anchors.iter().map(|anchor| Disc { centre: anchor.as_dvec2(), radius_m }).collect()
     }
 
-    /// Takes the most urgent cells out of the queue.
+    /// Orders the most urgent cells of those that wait.
     fn order(&mut self, viewpoints: &[Viewpoint], there: &impl CellSet, plant: &mut Vec<IVec2>) {
-        let room = (self.settings.most_ordered as usize).saturating_sub(self.ordered.len());
-        let wanted = room.min(self.settings.plants_per_step as usize);
-        if wanted == 0 || self.waiting.is_empty() {
+        let Self { settings, waiting, ordered, blocks, next, .. } = self;
+        let room = (settings.most_ordered as usize).saturating_sub(ordered.len());
+        let wanted = room.min(settings.plants_per_step as usize);
+        if wanted == 0 || waiting.is_empty() {
             return;
         }
         let urgency = Urgency::new(viewpoints, self.cell_m);
-        for (delay, cell) in &mut self.waiting {
-            *delay = urgency.delay(*cell);
-        }
-        // Some of the first may turn out to be ordered already: a viewer went away and came back.
-        let candidates = (wanted + self.ordered.len()).min(self.waiting.len());
-        let others = self.waiting.len() - candidates;
-        let last_first = |one: &(f32, IVec2), other: &(f32, IVec2)| {
-            other.0.total_cmp(&one.0).then_with(|| (other.1.y, other.1.x).cmp(&(one.1.y, one.1.x)))
-        };
-        if others > 0 {
-            self.waiting.select_nth_unstable_by(others, last_first);
-        }
-        self.waiting[others..].sort_unstable_by(last_first);
-        while plant.len() < wanted
-            && let Some((_, cell)) = self.waiting.pop()
-        {
-            if !there.contains(cell) && self.ordered.insert((cell.y, cell.x)) {
-                plant.push(cell);
+        blocks.clear();
+        blocks.extend(waiting.blocks().map(|block| (urgency.delay_of_block(block), block)));
+        keep_first(blocks, BLOCKS_PER_STEP);
+        blocks.sort_unstable_by(by_delay);
+        next.clear();
+        for &(delay, block) in &*blocks {
+            if next.len() == wanted && next.iter().all(|(others, _)| *others <= delay) {
+                break;
             }
+            waiting.retain(block, |cell| {
+                let waits = !there.contains(cell) && !ordered.contains(&(cell.y, cell.x));
+                next.extend(waits.then(|| (urgency.delay(cell), cell)));
+                waits
+            });
+            keep_first(next, wanted);
         }
+        next.sort_unstable_by(by_delay);
+        for &(_, cell) in &*next {
+            waiting.remove(cell);
+            ordered.insert((cell.y, cell.x));
+            plant.push(cell);
+        }
+    }
+
+    /// Drops cells of those that nobody keeps.
+    fn drop(&mut self, there: &impl CellSet, drop: &mut Vec<IVec2>) {
+        for _ in 0..BLOCKS_PER_STEP {
+            let most = self.settings.drops_per_step as usize;
+            let Some(block) = self.leaving.blocks().next().filter(|_| drop.len() < most) else { return };
+            self.leaving.retain(block, |cell| {
+                let has_room = drop.len() < most;
+                drop.extend((has_room && there.contains(cell)).then_some(cell));
+                !has_room
+            });
+        }
+    }
+}
+
+/// The shorter delay first; cells with the same in the order of their places.
+fn by_delay(one: &(f32, IVec2), other: &(f32, IVec2)) -> Ordering {
+    one.0.total_cmp(&other.0).then_with(|| (one.1.y, one.1.x).cmp(&(other.1.y, other.1.x)))
+}
+
+/// Keeps the first so many of a list, in no order.
+fn keep_first(list: &mut Vec<(f32, IVec2)>, count: usize) {
+    if list.len() > count {
+        list.select_nth_unstable_by(count, by_delay);
+        list.truncate(count);
     }
 }
 

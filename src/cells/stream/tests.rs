@@ -47,7 +47,7 @@ fn settle(stream: &mut CellStream, viewpoints: &[Viewpoint], store: &mut CellSto
         for cell in &orders.plant {
             stream.deliver(*cell, planted(*cell), store);
         }
-        if orders == Orders::default() {
+        if orders == Orders::default() && stream.waiting.is_empty() && stream.leaving.is_empty() {
             return;
         }
     }
@@ -92,6 +92,33 @@ fn the_nearest_cells_come_first_and_those_in_front_before() {
     stream.give_back(all[3]);
     stream.step(&[at(10.0, 10.0)], &store, &mut orders);
     assert_eq!(orders.plant, [all[3]]);
+}
+
+#[test]
+fn orders_are_the_first_of_all_that_wait() {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(4);
+    for viewers in [1, 1, 1, 1, 2, 3] {
+        let viewpoints: Vec<Viewpoint> = (0..viewers)
+            .map(|_| Viewpoint {
+                forward: Vec3::new(random.random_range(-1.0..1.0), 0.1, random.random_range(-1.0..1.0)),
+                ..at(random.random_range(-400.0..400.0), random.random_range(-400.0..400.0))
+            })
+            .collect();
+        let settings = StreamSettings { load_m: 1200.0, keep_m: 1400.0, most_ordered: 100_000, ..settings() };
+        let (mut stream, store) = (stream(settings), CellStore::new(CELL_M).unwrap());
+        let urgency = Urgency::new(&viewpoints, CELL_M);
+        let (mut orders, mut ordered) = (Orders::default(), Vec::new());
+        loop {
+            stream.step(&viewpoints, &store, &mut orders);
+            if orders.plant.is_empty() {
+                break;
+            }
+            ordered.extend(orders.plant.iter().map(|cell| (urgency.delay(*cell), *cell)));
+        }
+        assert!(ordered.len() > 1000, "{} cells", ordered.len());
+        let late = ordered.windows(2).filter(|two| by_delay(&two[0], &two[1]).is_gt());
+        assert_eq!(late.collect::<Vec<_>>(), Vec::<&[(f32, IVec2)]>::new(), "{viewpoints:?}");
+    }
 }
 
 #[test]
