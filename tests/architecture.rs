@@ -23,7 +23,7 @@ const MAY_KNOW: [(&str, &[&str]); 12] = [
 
 /// Files that glue a room to the engine. All others but those of `sway` are pure: they can be read beside the
 /// paper, and know no entities, systems or apps.
-const GLUE: [&str; 39] = [
+const GLUE: [&str; 40] = [
     "wind/cells.rs",
     "wind/clock.rs",
     "wind/current.rs",
@@ -31,6 +31,7 @@ const GLUE: [&str; 39] = [
     "wind/plugin.rs",
     "tree/components.rs",
     "tree/grove.rs",
+    "tree/grow.rs",
     "tree/loader.rs",
     "tree/plugin.rs",
     "tree/season.rs",

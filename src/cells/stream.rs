@@ -92,7 +92,8 @@ pub struct CellStream {
     ordered: BTreeSet<(i32, i32)>,
     /// All cells in the store that no viewer keeps, and some that are not there.
     leaving: Marks,
-    /// Buffers of a step: blocks of `waiting`, and the most urgent cells, with their delays.
+    /// Buffers of a step: who looks, blocks of `waiting`, and the most urgent cells, with their delays.
+    urgency: Urgency,
     blocks: Vec<(f32, IVec2)>,
     next: Vec<(f32, IVec2)>,
 }
@@ -115,6 +116,7 @@ impl CellStream {
             waiting: Marks::default(),
             ordered: BTreeSet::new(),
             leaving: Marks::default(),
+            urgency: Urgency::default(),
             blocks: Vec::new(),
             next: Vec::new(),
         })
@@ -214,13 +216,13 @@ impl CellStream {
 
     /// Orders the most urgent cells of those that wait.
     fn order(&mut self, viewpoints: &[Viewpoint], there: &impl CellSet, plant: &mut Vec<IVec2>) {
-        let Self { settings, waiting, ordered, blocks, next, .. } = self;
+        let Self { settings, waiting, ordered, urgency, blocks, next, .. } = self;
         let room = (settings.most_ordered as usize).saturating_sub(ordered.len());
         let wanted = room.min(settings.plants_per_step as usize);
         if wanted == 0 || waiting.is_empty() {
             return;
         }
-        let urgency = Urgency::new(viewpoints, self.cell_m);
+        urgency.look(viewpoints, self.cell_m);
         blocks.clear();
         blocks.extend(waiting.blocks().map(|block| (urgency.delay_of_block(block), block)));
         keep_first(blocks, BLOCKS_PER_STEP);

@@ -106,7 +106,8 @@ fn orders_are_the_first_of_all_that_wait() {
             .collect();
         let settings = StreamSettings { load_m: 1200.0, keep_m: 1400.0, most_ordered: 100_000, ..settings() };
         let (mut stream, store) = (stream(settings), CellStore::new(CELL_M).unwrap());
-        let urgency = Urgency::new(&viewpoints, CELL_M);
+        let mut urgency = Urgency::default();
+        urgency.look(&viewpoints, CELL_M);
         let (mut orders, mut ordered) = (Orders::default(), Vec::new());
         loop {
             stream.step(&viewpoints, &store, &mut orders);

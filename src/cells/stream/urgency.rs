@@ -12,22 +12,25 @@ const IN_FRONT: Vec2 = Vec2::new(0.5, 0.866_025_4);
 const AROUND_CELLS: f32 = 2.0;
 
 /// The viewers as those who wait see them.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Urgency(Vec<Eye>);
 
 /// A viewer, in cells.
+#[derive(Clone, Copy, Debug)]
 struct Eye {
     place: Vec2,
     forward: Vec2,
 }
 
 impl Urgency {
-    pub(super) fn new(viewpoints: &[Viewpoint], cell_m: f32) -> Self {
-        let one = |viewpoint: &Viewpoint| Eye {
+    /// Follows the viewers.
+    pub(super) fn look(&mut self, viewpoints: &[Viewpoint], cell_m: f32) {
+        self.0.clear();
+        self.0.extend(viewpoints.iter().map(|viewpoint| Eye {
             // Towards the middles of cells.
             place: viewpoint.eye_m.xz() / cell_m - 0.5,
             forward: viewpoint.forward.xz().normalize_or_zero(),
-        };
-        Self(viewpoints.iter().map(one).collect())
+        }));
     }
 
     /// How long a cell may wait: the square of its distance, in cells, greater where no viewer looks.
