@@ -1,0 +1,41 @@
+//! What a viewer does that is worse than to fly: to whirl about on the spot, and to leap across the woods.
+
+use super::{Flight, SIDE_M, dearest::median_and_p99};
+use bevy::prelude::*;
+use bevy_windwood::SystemTimes;
+
+/// How often each is done; the slowest frame of each time counts, and the median of these, so that what else the machine
+/// does now and then does not.
+const TIMES: usize = 5;
+/// Frames of a whole turn; and those after a leap, in which most of what is near comes.
+const FRAMES: [usize; 2] = [15, 40];
+
+/// The slowest frame of a turn by 24 degrees a frame, and after a leap, ms. `frame` lets one pass.
+pub fn slowest_ms(app: &mut App, flight: &mut Flight, mut frame: impl FnMut(&mut App)) -> [f64; 2] {
+    let mut slowest = |frames, act: &mut dyn FnMut(&mut Transform, usize, usize)| {
+        let of_each: Vec<f64> = (0..TIMES)
+            .map(|time| {
+                let times_ms = (0..frames).map(|number| {
+                    flight.place(app, |at| act(at, time, number));
+                    frame(app);
+                    app.world().resource::<SystemTimes>().total().as_secs_f64() * 1e3
+                });
+                times_ms.fold(0.0, f64::max)
+            })
+            .collect();
+        median_and_p99(&of_each)[0]
+    };
+    let turning_ms = slowest(FRAMES[0], &mut |at, _, _| at.rotate_y(24_f32.to_radians()));
+    let leaping_ms = slowest(FRAMES[1], &mut |at, time, number| {
+        if number == 0 {
+            at.translation.x = spot_m(time, 0.754_877_7);
+            at.translation.z = spot_m(time, 0.569_840_3);
+        }
+    });
+    [turning_ms, leaping_ms]
+}
+
+/// Spots that are spread evenly over the inner woods (the R2 sequence of Roberts 2018), m.
+fn spot_m(time: usize, step: f32) -> f32 {
+    ((0.5 + step * (time + 1) as f32).fract() - 0.5) * 0.8 * SIDE_M
+}
