@@ -114,7 +114,8 @@ pub struct GroundLook {
     pub line_blur_m: f32,
     /// Side of one repeat of the finest texture. units: m, domain: \[0.1, 1000\].
     pub texture_m: f32,
-    /// Distance from which on woods are the colour of their crowns, because trees are no longer drawn.
+    /// Distance from which on woods are the colour of their crowns alone, because trees are no longer drawn; it comes between
+    /// the half of this and four fifths.
     /// units: m, domain: \[0, 1000000\].
     pub canopy_from_m: f32,
 }
@@ -134,7 +135,7 @@ impl Default for GroundLook {
             grass_line_m: 1e5,
             snow_line_m: 1e5,
             line_blur_m: 150.0,
-            texture_m: 5.0,
+            texture_m: 2.0,
             canopy_from_m: 400.0,
         }
     }

@@ -36,21 +36,22 @@ struct Look {
 
 // Repeats of the texture: no two have a common measure, and they are turned against one another, so that the eye finds no
 // period.
-const TURNED: mat2x2<f32> = mat2x2(0.251, -0.307, 0.307, 0.251);
-const MIDDLE: mat2x2<f32> = mat2x2(0.0642, 0.0437, -0.0437, 0.0642);
-const WIDE: mat2x2<f32> = mat2x2(0.0041, -0.0067, 0.0067, 0.0041);
-const VAST: mat2x2<f32> = mat2x2(0.00083, 0.00031, -0.00031, 0.00083);
+const NEAR: mat2x2<f32> = mat2x2(0.891, 0.454, -0.454, 0.891);
+const TURNED: mat2x2<f32> = mat2x2(0.201, -0.246, 0.246, 0.201);
+const MIDDLE: mat2x2<f32> = mat2x2(0.0257, 0.0175, -0.0175, 0.0257);
+const WIDE: mat2x2<f32> = mat2x2(0.00164, -0.00268, 0.00268, 0.00164);
+const VAST: mat2x2<f32> = mat2x2(0.00033, 0.00012, -0.00012, 0.00033);
 
 // The colour and the light on it that gets lost between blades and clods.
 fn ground_colour(place: vec3<f32>, normal: vec3<f32>, covered: f32, distance: f32) -> vec3<f32> {
     let uv = place.xz * look.per_texture_m;
-    let near = textureSample(detail, detail_sampler, uv);
+    let near = textureSample(detail, detail_sampler, NEAR * uv);
     let turned = textureSample(detail, detail_sampler, TURNED * uv);
     let middle = textureSample(detail, detail_sampler, MIDDLE * uv);
     let wide = textureSample(detail, detail_sampler, WIDE * uv);
     let vast = textureSample(detail, detail_sampler, VAST * uv);
     // Seams of rock follow the height, so that cliffs are not smeared.
-    let strata = textureSample(detail, detail_sampler, vec2(0.11 * (uv.x + uv.y), 0.31 * place.y * look.per_texture_m));
+    let strata = textureSample(detail, detail_sampler, vec2(0.044 * (uv.x + uv.y), 0.124 * place.y * look.per_texture_m));
 
     // What breaks up every border, some -1..1. From afar only what is large does: the eye would see repeats of the rest.
     let nearness = 1.0 / (1.0 + distance * distance / 90000.0);
@@ -58,9 +59,10 @@ fn ground_colour(place: vec3<f32>, normal: vec3<f32>, covered: f32, distance: f3
     let slope = 1.0 - normal.y;
     let span = look.bare_to - look.bare_from;
 
-    let dryness = smoothstep(-0.5, 0.7, ragged + 0.4 * (wide.r - 0.5))
+    // Fresh and dry blades grow side by side.
+    let dryness = smoothstep(-0.5, 0.7, ragged + 0.4 * (wide.r - 0.5) + 0.45 * (near.r - 0.5) + 0.3 * (turned.b - 0.5))
         + smoothstep(-1.0, 1.0, (place.y - look.grass_line_m) / look.line_blur_m + ragged);
-    let blades = 0.25 + 0.65 * near.r + 0.4 * turned.r * (0.4 + 0.6 * middle.a) + 0.2 * middle.r;
+    let blades = 0.44 + 0.45 * near.r + 0.18 * turned.r * (0.4 + 0.6 * middle.a) + 0.15 * middle.r;
     var colour = mix(look.grass.rgb, look.dry_grass.rgb, saturate(dryness)) * blades;
 
     let floor = look.litter.rgb * (0.45 + 0.5 * near.g + 0.5 * turned.g);
@@ -74,9 +76,9 @@ fn ground_colour(place: vec3<f32>, normal: vec3<f32>, covered: f32, distance: f3
     let stony = smoothstep(look.bare_to - 0.5 * span, look.bare_to + 0.25 * span, slope + 0.3 * span * ragged + 0.2 * span * (strata.b - 0.5));
     colour = mix(colour, look.rock.rgb * seams, stony);
 
-    // Crowns far away: dark between, light on top. They hide what is under them.
+    // Crowns far away: dark between, light on top. They hide what is under them, and are all there before the last trees go.
     let crowns = 0.3 + 0.8 * mix(0.5, middle.g, 0.35 + 0.65 * nearness) * (0.6 + 0.4 * turned.g) + 0.3 * (wide.r - 0.5) + 0.25 * (vast.b - 0.5);
-    let closed = smoothstep(0.12, 0.5, covered * (1.0 + 0.6 * ragged)) * smoothstep(0.75, 1.15, distance / max(look.canopy_from_m, 1e-3));
+    let closed = smoothstep(0.12, 0.5, covered * (1.0 + 0.6 * ragged)) * smoothstep(0.55, 0.8, distance / max(look.canopy_from_m, 1e-3));
     colour = mix(colour, look.canopy.rgb * crowns, closed);
 
     let steep = smoothstep(look.bare_to - span, look.bare_to + span, slope + 0.2 * span * (strata.b - 0.5));

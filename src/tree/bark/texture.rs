@@ -6,7 +6,7 @@ use super::{
     Bark,
     pattern::{Pattern, Point},
 };
-use crate::texture::{Canvas, TextureData, linear, mix};
+use crate::texture::{Canvas, TextureData, blurred, linear, mix};
 
 /// The textures of a bark; all tile in both directions, u around the branch, v along it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,7 +40,7 @@ pub fn bark_textures(bark: &Bark, seed: u64) -> BarkTextures {
         })
         .collect();
     let heights: Vec<f32> = points.iter().map(|point| point.height).collect();
-    let around = blurred(&heights, OCCLUSION_REACH);
+    let around = blurred(&heights, SIZE, OCCLUSION_REACH);
     let colours = Colours::of(bark);
     let mut base_colour = Canvas::filled(SIZE, [0.0; 4]);
     let mut normal = Canvas::filled(SIZE, [0.0; 4]);
@@ -91,35 +91,6 @@ impl Colours {
 fn gradient(heights: &[f32], x: usize, y: usize) -> Vec2 {
     let height = |x: usize, y: usize| heights[(y % SIZE) * SIZE + x % SIZE];
     Vec2::new(height(x + 1, y) - height(x + SIZE - 1, y), height(x, y + 1) - height(x, y + SIZE - 1))
-}
-
-/// Means over squares of `2 reach + 1` texels that wrap around, by running sums along rows and then along columns.
-fn blurred(heights: &[f32], reach: usize) -> Vec<f32> {
-    let mut rows = vec![0.0; SIZE * SIZE];
-    let share = 1.0 / (2 * reach + 1) as f32;
-    for (row, out) in heights.chunks_exact(SIZE).zip(rows.chunks_exact_mut(SIZE)) {
-        let mut sum: f32 = (0..=2 * reach).map(|k| row[(k + SIZE - reach) % SIZE]).sum();
-        for x in 0..SIZE {
-            out[x] = sum * share;
-            sum += row[(x + reach + 1) % SIZE] - row[(x + SIZE - reach) % SIZE];
-        }
-    }
-    let mut out = vec![0.0; SIZE * SIZE];
-    let line = |y: usize| &rows[(y % SIZE) * SIZE..(y % SIZE + 1) * SIZE];
-    let mut sums = vec![0.0_f32; SIZE];
-    for k in 0..=2 * reach {
-        sums.iter_mut().zip(line(k + SIZE - reach)).for_each(|(sum, value)| *sum += value);
-    }
-    for y in 0..SIZE {
-        for x in 0..SIZE {
-            out[y * SIZE + x] = sums[x] * share;
-        }
-        let (entering, leaving) = (line(y + reach + 1), line(y + SIZE - reach));
-        for (sum, (enters, leaves)) in sums.iter_mut().zip(entering.iter().zip(leaving)) {
-            *sum += enters - leaves;
-        }
-    }
-    out
 }
 
 #[cfg(test)]
