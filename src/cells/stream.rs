@@ -17,7 +17,7 @@ use bevy::{
     math::{IVec2, Vec2, Vec3, Vec3Swizzles},
     platform::collections::HashMap,
 };
-use disc::{Disc, visit_difference};
+use disc::{Disc, any_contains, visit_difference};
 use marks::Marks;
 use std::{cmp::Ordering, collections::BTreeSet};
 use urgency::Urgency;
@@ -175,7 +175,7 @@ impl CellStream {
     }
 
     fn is_in(&self, cell: IVec2, discs: &[Disc]) -> bool {
-        discs.iter().any(|disc| disc.contains(cell, f64::from(self.cell_m)))
+        any_contains(discs, cell, f64::from(self.cell_m))
     }
 
     fn has_moved(&self, viewpoints: &[Viewpoint]) -> bool {
@@ -198,9 +198,8 @@ impl CellStream {
         visit_difference(&keep, &self.keep, cell_m, bounds, |row, first, last| leaving.remove_run(row, first, last));
         visit_difference(&self.keep, &keep, cell_m, bounds, |row, first, last| leaving.insert_run(row, first, last));
         if first {
-            let kept = |cell| keep.iter().any(|disc| disc.contains(cell, cell_m));
             there.visit(|cell| {
-                if !kept(cell) {
+                if !any_contains(&keep, cell, cell_m) {
                     leaving.insert(cell);
                 }
             });

@@ -22,12 +22,14 @@ struct Kind {
     is_fine: bool,
 }
 
+const BLADES: Kind = Kind { cycles: 7.0, terms: 6, combination: Combination::Product, seed: 3, is_fine: true };
+
 /// Red: blades and tufts; green: clods of earth; blue: seams in rock; alpha: patches. Each is spread over 0 to 1 so that
 /// a tenth lies at either end, with mips.
 pub(super) fn ground_texture() -> TextureData {
     let kind = |cycles, terms, combination, seed| Kind { cycles, terms, combination, seed, is_fine: false };
     let kinds = [
-        Kind { is_fine: true, ..kind(7.0, 6, Combination::Product, 3) },
+        BLADES,
         kind(5.0, 6, Combination::Sum, 11),
         kind(3.0, 7, Combination::Product, 23),
         kind(2.0, 4, Combination::Sum, 31),
@@ -96,7 +98,7 @@ mod tests {
         const SIDE: usize = SIZE / BLOCKS;
         // The deviation of the means of squares that are half as wide as the first waves.
         let unevenness = |is_fine: bool| {
-            let kind = Kind { cycles: 7.0, terms: 6, combination: Combination::Product, seed: 3, is_fine };
+            let kind = Kind { is_fine, ..BLADES };
             let mut canvas = Canvas::filled(SIZE, [0.5; 4]);
             spread(&mut canvas, 0, kind.values().unwrap());
             let mut means = [0.0; BLOCKS * BLOCKS];

@@ -6,8 +6,9 @@ use bevy::prelude::*;
 /// A tree of a species, standing at its `Transform` (uniform scale).
 ///
 /// Once the species is loaded and baked the entity gets a [`Grown`] model, and, where there is rendering, one draw for
-/// its wood and one for its leaves; all trees of one model are drawn together. Change it as
-/// you like: another species, age or seed is noticed within eight frames, and the tree is another once that model is baked.
+/// its wood and one for its leaves; all trees of one model are drawn together.
+/// Change it as you like: another species, age or seed is noticed within eight frames, and the tree is another once that
+/// model is baked.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component)]
 #[require(Transform, Visibility)]

@@ -1,6 +1,7 @@
 //! What a viewer does that is worse than to fly: to whirl about on the spot, and to leap across the woods.
 
 use super::{Flight, SIDE_M, dearest::median_and_p99};
+use crate::report::Report;
 use bevy::prelude::*;
 use bevy_windwood::SystemTimes;
 
@@ -34,6 +35,14 @@ pub fn slowest_ms(app: &mut App, flight: &mut Flight, mut frame: impl FnMut(&mut
         }
     });
     [turning_ms, leaping_ms]
+}
+
+/// Tells what [`slowest_ms`] found under these keys: both medians, then both of the worst.
+pub fn tell(report: &mut Report, keys: [&'static str; 4], [[turn, worst_turn], [leap, worst_leap]]: [[f64; 2]; 2]) {
+    report.at_most(keys[0], turn, 2.0, "the slowest frame of a quick turn on the spot, median of five");
+    report.at_most(keys[1], leap, 2.0, "the slowest frame after a leap of kilometres, median of five");
+    report.tell(keys[2], worst_turn, "the worst of the five");
+    report.tell(keys[3], worst_leap, "the worst of the five");
 }
 
 /// Spots that are spread evenly over the inner woods (the R2 sequence of Roberts 2018), m.

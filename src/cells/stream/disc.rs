@@ -23,7 +23,7 @@ impl Disc {
     }
 
     /// Whether any part of a cell is within the disc.
-    pub(super) fn contains(&self, cell: IVec2, cell_m: f64) -> bool {
+    fn contains(&self, cell: IVec2, cell_m: f64) -> bool {
         self.run(cell.y, cell_m).is_some_and(|[first, last]| (first..=last).contains(&cell.x))
     }
 
@@ -32,6 +32,11 @@ impl Disc {
         let row = |z_m: f64| (z_m / cell_m).floor() as i32;
         [row(self.centre.y - self.radius_m).saturating_sub(1), row(self.centre.y + self.radius_m).saturating_add(1)]
     }
+}
+
+/// Whether any part of a cell is within any of the discs.
+pub(super) fn any_contains(discs: &[Disc], cell: IVec2, cell_m: f64) -> bool {
+    discs.iter().any(|disc| disc.contains(cell, cell_m))
 }
 
 /// Visits each cell within `bounds` that is in any of `these` discs and in none of `those`, in runs (row, first column, last
