@@ -55,7 +55,7 @@ fn the_ladder_of_ages_and_the_bits_of_a_tag_are_the_same_in_both_languages() {
         value.chars().filter(|c| *c != 'u').collect()
     };
     assert_eq!(value(include_str!("../src/sway/detail.rs"), "LADDER"), value(BEAM, "LADDER"));
-    let (code, shader) = (include_str!("../src/sway/draw.rs"), include_str!("../src/sway/shaders/sway.wgsl"));
+    let (code, shader) = (include_str!("../src/sway/dress.rs"), include_str!("../src/sway/shaders/sway.wgsl"));
     for name in ["FADES_OUT", "FADES_IN", "CARDS_BEHIND"] {
         assert_eq!(value(code, name), value(shader, name));
     }

@@ -7,7 +7,7 @@ use super::{cells::ForestCells, components::ForestCell, extent::Reach};
 use crate::{
     cells::{Sun, View, Watch},
     sway::Exposure,
-    tree::{Grove, SwayBounds, TreeModel},
+    tree::{Grove, TreeModel},
 };
 use bevy::{
     camera::primitives::Frustum,
@@ -112,14 +112,9 @@ pub(super) fn measure_species(
     grove: Res<Grove>,
     models: Res<Assets<TreeModel>>,
     exposure: Option<Res<Exposure>>,
-    mut known: Local<HashMap<AssetId<TreeModel>, SwayBounds>>,
     mut forests: Query<(Entity, Ref<ForestCells>, Option<&mut Sights>)>,
 ) {
-    // A box takes some microseconds, and species have many models.
     let exposed_anew = exposure.as_ref().is_some_and(DetectChanges::is_changed);
-    if exposed_anew || grove.is_changed() {
-        known.retain(|model, _| !exposed_anew && models.contains(*model));
-    }
     for (entity, forest, sights) in &mut forests {
         let Some(mut sights) = sights else {
             commands.entity(entity).insert(Sights::default());
@@ -135,12 +130,11 @@ pub(super) fn measure_species(
         sights.reaches.extend(forest.species().iter().map(|species| {
             let Some(entry) = grove.get(species.id()) else { return Reach::default() };
             let grown = entry.stages.values().flat_map(|stage| &stage.models);
-            let grown = grown.filter_map(|model| Some((model.id(), models.get(model)?)));
-            grown.fold(Reach::default(), |reach, (id, model)| {
-                let measure = || exposure.bounds(model, &entry.species.phenology);
-                let SwayBounds { min, max } = *known.entry(id).or_insert_with(measure);
-                reach.with(min, max)
-            })
+            let bounds = |model| exposure.bounds(model, &entry.species.phenology);
+            grown
+                .filter_map(|model| models.get(model))
+                .map(bounds)
+                .fold(Reach::default(), |reach, bounds| reach.with(bounds.min, bounds.max))
         }));
     }
 }

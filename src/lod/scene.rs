@@ -28,7 +28,7 @@ use crate::{
 };
 
 /// The mip of the foliage that is seen from afar: the coarsest that the renderer uses (`FOLIAGE_LOD_LIMIT` of
-/// `sway/looks.rs`).
+/// `sway/painted.rs`).
 const FOLIAGE_MIP: usize = 3;
 /// The mip of the bark: texels of some centimetres.
 const BARK_MIP: usize = 4;

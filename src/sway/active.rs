@@ -89,7 +89,13 @@ pub(super) fn rebuild_tables(wind: Res<ActiveWind>, settings: Res<SwaySettings>,
     }
     sway.source = Some((field.clone(), wanted.clone()));
     let field = field.clone();
-    sway.building = Some(AsyncComputeTaskPool::get().spawn(async move { WindResponse::new(field, &wanted) }));
+    let build = async move {
+        let response = WindResponse::new(field, &wanted);
+        #[cfg(feature = "render")]
+        response.pack();
+        response
+    };
+    sway.building = Some(AsyncComputeTaskPool::get().spawn(build));
 }
 
 /// Takes over tables that have been built, and moves the fade on.

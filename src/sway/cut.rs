@@ -3,12 +3,12 @@
 use super::{
     detail::LevelStyle,
     material::{ATTRIBUTE_LEAF_ANCHOR, ATTRIBUTE_LEAF_AXIS, ATTRIBUTE_SWAY},
+    painted::{Painted, wrapped},
 };
 use crate::{
     lod::{
         CylinderLevel, EnvelopeVertices, LevelSettings, PlainVertices, Reduction, Scene, plain::plain, simplify::reduce,
     },
-    texture::TextureData,
     tree::{
         Species, TreeModel,
         growth::Growth,
@@ -27,7 +27,7 @@ use std::sync::Arc;
 /// All that is prepared of a species at one age.
 pub(super) struct Cut {
     /// Painted once for all ages.
-    pub textures: Option<SpeciesTextures>,
+    pub painted: Option<Painted>,
     pub variants: Vec<VariantCut>,
 }
 
@@ -57,7 +57,7 @@ pub(super) enum Cloth {
     FadingBark,
     Foliage,
     /// An envelope of leaves in this texture.
-    Envelope(Box<TextureData>),
+    Envelope(Box<Image>),
     /// Linear colours of trunk and crown.
     Plain([[f32; 3]; 2]),
 }
@@ -85,7 +85,7 @@ pub(super) fn cut(species: &Species, painting: bool, models: Vec<TreeModel>, sty
     };
     let variant = |model: TreeModel| VariantCut { height_m: model.height_m(), levels: levels(model) };
     let variants = models.into_iter().map(variant).collect();
-    Cut { textures: textures.filter(|_| painting), variants }
+    Cut { painted: textures.filter(|_| painting).as_ref().map(Painted::from), variants }
 }
 
 fn full_level(model: TreeModel, bark: Cloth) -> LevelCut {
@@ -130,7 +130,7 @@ fn paper_levels(
     let colours = [four.colours.first(), four.colours.last()].map(|colour| colour.copied().unwrap_or([0.1; 3]));
     let low = Piece { mesh: plain_mesh(four), cloth: Cloth::Plain(colours) };
     let medium = cylinder.map(|CylinderLevel { envelope, trunk, colour, images, .. }| {
-        let cloth = Cloth::Envelope(Box::new(colour));
+        let cloth = Cloth::Envelope(Box::new(wrapped(&colour)));
         LevelCut {
             wood: Piece { mesh: wood_mesh(trunk), cloth: Cloth::FadingBark },
             leaves: Some(Piece { mesh: envelope_mesh(envelope, images), cloth }),

@@ -24,7 +24,8 @@ pub struct LevelOfDetail {
     pub distances: LevelDistances,
     /// Over this share of a distance, to either side, one level fades into the next. domain: \[0.02, 0.3\].
     pub fade: f32,
-    /// Trees that change their level in a frame, at most; each takes some microseconds. domain: \[1, 1000000\].
+    /// Trees that change their level in a frame, at most, and half as many that get their first; each takes some microseconds.
+    /// domain: \[1, 1000000\].
     pub changes_per_frame: u32,
 }
 

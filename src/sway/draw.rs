@@ -5,17 +5,13 @@
 
 use super::{
     detail::{Levels, MOST_LEVELS, Sight},
+    dress::Dress,
     exposure::Exposure,
-    looks::{Garment, SpeciesDressed, VariantLook, Wardrobe},
-    rouse::CulledOnGpu,
+    looks::{VariantLook, Wardrobe},
     stand::{Stand, Standing},
 };
-use crate::tree::{Grown, Species, Tree, TreeModel};
-use bevy::{
-    camera::{primitives::Aabb, visibility::NoAutoAabb},
-    mesh::MeshTag,
-    prelude::*,
-};
+use crate::tree::{Grown, Tree, TreeModel};
+use bevy::{camera::primitives::Aabb, prelude::*};
 
 /// How this machine can draw trees; found out once at start.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,10 +45,10 @@ pub(crate) struct CardBehind;
 pub(super) struct Worn {
     pub levels: Levels,
     /// How many levels it has.
-    count: u8,
+    pub count: u8,
     /// Its height while its scale is 1, m.
     pub height_m: f32,
-    tint: u8,
+    pub tint: u8,
 }
 
 /// Which levels trees wear.
@@ -84,66 +80,25 @@ impl TreesByLevel<'_, '_> {
     }
 }
 
-/// Puts the meshes and materials of its model on every tree that has got a new one.
-pub(super) fn dress_trees(
-    mut commands: Commands,
-    wardrobe: Res<Wardrobe>,
-    path: Res<DrawPath>,
-    sight: Res<Sight>,
-    mut stand: ResMut<Stand>,
-    mut dressed: MessageReader<SpeciesDressed>,
-    places: TransformHelper,
-    trees: Query<(Entity, &Tree, &Grown, Option<&Children>, Has<CardBehind>)>,
-    regrown: Query<Entity, Changed<Grown>>,
-    draws: Query<(), Or<(With<Foliage>, With<Coming>)>>,
-) {
-    let renewed: Vec<AssetId<Species>> = dressed.read().map(|message| message.0).collect();
-    let mut dress = |(entity, tree, grown, children, card_behind): (Entity, &Tree, &Grown, Option<&Children>, bool)| {
-        let Some(variant) = wardrobe.variant(tree.species.id(), grown.model.id()) else { return };
-        for old in children.into_iter().flatten().filter(|child| draws.contains(**child)) {
-            commands.entity(*old).despawn();
-        }
-        let standing = if path.sways { stand.admit(grown.model.id()) } else { None };
-        let (scale, _, place) =
-            places.compute_global_transform(entity).unwrap_or_default().to_scale_rotation_translation();
-        let mut worn = Worn {
-            levels: Levels::default(),
-            count: variant.levels.len() as u8,
-            height_m: variant.height_m,
-            tint: tree.tint_byte(grown.seed) as u8,
-        };
-        let fades = Fades { levels: standing.is_some(), into_card: card_behind };
-        worn.levels = worn.choose(&sight, place, scale.y, fades, None);
-        // The old row, if there is one, is given back when the component goes.
-        let mut tree = commands.entity(entity);
-        tree.remove::<Standing>().insert(worn);
-        if let Some(standing) = standing {
-            tree.insert(standing);
-        }
-        let dress = Dress { tree: entity, variant, worn, standing, card_behind, path: *path };
-        dress.put_on(None, &mut commands);
-    };
-    if renewed.is_empty() {
-        regrown.iter().filter_map(|entity| trees.get(entity).ok()).for_each(&mut dress);
-    } else {
-        let due = |tree: &Tree, entity| renewed.contains(&tree.species.id()) || regrown.contains(entity);
-        trees.iter().filter(|(entity, tree, ..)| due(tree, *entity)).for_each(&mut dress);
-    }
-}
+/// Boxes that are fitted in a frame, at most: to do it for all trees takes milliseconds, and a wind grows over many frames.
+const BOXES_PER_FRAME: usize = 1024;
 
 /// Gives trees more room when a stronger wind comes, and takes back what they need no more.
 pub(super) fn fit_boxes(
     exposure: Res<Exposure>,
     models: Res<Assets<TreeModel>>,
     mut wardrobe: ResMut<Wardrobe>,
-    mut trees: Query<(&Tree, &Grown, &mut Aabb, Option<&Children>), With<Worn>>,
+    mut due: Local<Vec<Entity>>,
+    mut trees: Query<(Entity, &Tree, &Grown, &mut Aabb, Option<&Children>), With<Worn>>,
     mut draws: Query<&mut Aabb, (Or<(With<Foliage>, With<Coming>)>, Without<Worn>)>,
 ) {
-    if !exposure.is_changed() {
-        return;
+    if exposure.is_changed() && wardrobe.fit_boxes(&models, &exposure) {
+        due.clear();
+        due.extend(trees.iter().map(|(entity, ..)| entity));
     }
-    wardrobe.fit_boxes(&models, &exposure);
-    for (tree, grown, mut bounds, children) in &mut trees {
+    let rest = due.len().saturating_sub(BOXES_PER_FRAME);
+    for tree in due.drain(rest..) {
+        let Ok((_, tree, grown, mut bounds, children)) = trees.get_mut(tree) else { continue };
         let Some(variant) = wardrobe.variant(tree.species.id(), grown.model.id()) else { continue };
         bounds.set_if_neq(variant.bounds);
         let mut draws = draws.iter_many_mut(children.into_iter().flatten());
@@ -196,18 +151,26 @@ pub(super) fn choose_levels(
         }
         let leaves = children.find(|child| foliage.contains(*child));
         let dress = Dress { tree: entity, variant, worn: *worn, standing: standing.copied(), card_behind, path: *path };
-        dress.put_on(Some((before, leaves)), &mut commands);
+        dress.put_on(Some((before, leaves)), (), &mut commands);
     }
 }
 
 /// What a tree can fade into.
 #[derive(Clone, Copy)]
-struct Fades {
-    levels: bool,
-    into_card: bool,
+pub(super) struct Fades {
+    pub levels: bool,
+    pub into_card: bool,
 }
 
 impl Worn {
+    /// What a tree wears that is seen from where it stands for the first time.
+    pub fn new(variant: &VariantLook, tint: u8, sight: &Sight, at: &GlobalTransform, fades: Fades) -> Self {
+        let count = variant.levels.len() as u8;
+        let worn = Self { levels: Levels::default(), count, height_m: variant.height_m, tint };
+        let scale = at.affine().matrix3.y_axis.length();
+        Self { levels: worn.choose(sight, at.translation(), scale, fades, None), ..worn }
+    }
+
     /// The levels at a distance; a tree whose material cannot fade wears one at a time.
     fn choose(&self, sight: &Sight, place: Vec3, scale: f32, fades: Fades, before: Option<Levels>) -> Levels {
         let (distance_m, height_m) = (sight.distance_m(place), self.height_m * scale);
@@ -221,78 +184,5 @@ impl Worn {
             return sight.ladder.choose_before_card(distance_m, height_m, self.count, before);
         }
         sight.ladder.choose(distance_m, height_m, self.count, before)
-    }
-}
-
-/// How the level of a draw fades: bits of its tag.
-const FADES_OUT: u32 = 1 << 18;
-const FADES_IN: u32 = 1 << 19;
-const CARDS_BEHIND: u32 = 1 << 20;
-
-/// A tree and what it is to wear.
-struct Dress<'a> {
-    tree: Entity,
-    variant: &'a VariantLook,
-    worn: Worn,
-    standing: Option<Standing>,
-    card_behind: bool,
-    path: DrawPath,
-}
-
-impl Dress<'_> {
-    /// Puts the levels on: `before` is what the tree has worn, and the draw of its leaves.
-    fn put_on(&self, before: Option<(Levels, Option<Entity>)>, commands: &mut Commands) {
-        let Levels { first, both, gone } = self.worn.levels;
-        if before.map_or(gone, |(before, _)| before.gone != gone) {
-            let shown = if gone { Visibility::Hidden } else { Visibility::Inherited };
-            commands.entity(self.tree).insert(shown);
-        }
-        let Some(level) = self.variant.levels.get(usize::from(first)) else { return };
-        let same = before.filter(|(before, _)| before.first == first).is_some();
-        let fading = if both { FADES_OUT } else { self.end_of(first) };
-        self.put(&level.wood, first, fading, same, commands.entity(self.tree));
-        match (&level.leaves, before.and_then(|(_, leaves)| leaves)) {
-            (Some(leaves), Some(entity)) => self.put(leaves, first, fading, same, commands.entity(entity)),
-            (Some(leaves), None) => self.put(leaves, first, fading, false, self.child(Foliage, commands)),
-            (None, Some(entity)) => commands.entity(entity).despawn(),
-            (None, None) => {}
-        }
-        let next = first + 1;
-        let Some(level) = self.variant.levels.get(usize::from(next)).filter(|_| both) else { return };
-        let fading = FADES_IN | self.end_of(next);
-        if !level.nested {
-            self.put(&level.wood, next, fading, false, self.child(Coming, commands));
-        }
-        if let Some(leaves) = &level.leaves {
-            self.put(leaves, next, fading, false, self.child((Foliage, Coming), commands));
-        }
-    }
-
-    /// What comes after a level that is worn alone.
-    fn end_of(&self, level: u8) -> u32 {
-        if self.card_behind && level + 1 == self.worn.count { CARDS_BEHIND } else { 0 }
-    }
-
-    fn child<'c>(&self, mark: impl Bundle, commands: &'c mut Commands) -> EntityCommands<'c> {
-        commands.spawn((mark, ChildOf(self.tree), Transform::default()))
-    }
-
-    /// One draw; of one that is the `same` as before only the tag changes.
-    fn put(&self, garment: &Garment, level: u8, fading: u32, same: bool, mut entity: EntityCommands) {
-        let fading = if garment.fades && self.standing.is_some() { fading } else { 0 };
-        let row = self.standing.map_or(0, |standing| standing.row);
-        entity.insert(MeshTag(row | u32::from(level) << 16 | fading | u32::from(self.worn.tint) << 24));
-        if same {
-            return;
-        }
-        // The box holds every pose of now; the mesh's own would cull a tree that leans into the view.
-        entity.insert((Mesh3d(garment.mesh.clone()), self.variant.bounds, NoAutoAabb));
-        match &garment.outfit.swaying {
-            Some(swaying) if self.standing.is_some() => entity.insert(MeshMaterial3d(swaying.clone())),
-            _ => entity.insert(MeshMaterial3d(garment.outfit.still.clone())),
-        };
-        if self.path.culls_on_gpu {
-            entity.insert(CulledOnGpu);
-        }
     }
 }

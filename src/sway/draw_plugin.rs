@@ -4,16 +4,18 @@ use super::{
     compute,
     compute::{PoseJob, STORAGE_BUFFERS_NEEDED},
     detail::{CardRange, LevelOfDetail, Sight, look_about},
-    draw::{DrawPath, choose_levels, dress_trees, fit_boxes},
+    draw::{DrawPath, choose_levels, fit_boxes},
+    dress::dress_trees,
     exposure::{Exposure, find_exposure},
     lighting::{TreeLighting, TreeLights, find_lights, relight},
-    looks::{SpeciesDressed, Tailoring, Wardrobe, finish_tailoring, start_tailoring},
+    looks::{StageDressed, Tailoring, Wardrobe, finish_tailoring, start_tailoring},
     material::{SwayExtension, SwayMaterial},
     mend,
     rouse::{Roused, recall_meshes, rouse_meshes},
     rows::POSE_BYTES,
     stand::{Stand, dismiss_tree, place_trees, see_trees},
     upload::{StandBuffers, StandTables, upload_frame, upload_winds},
+    writes,
 };
 use crate::{schedule::WindwoodSystems, timing::timed, tree::receive_models, viewpoint::give_cameras_viewpoints};
 use bevy::{
@@ -52,7 +54,7 @@ impl Plugin for SwayDrawPlugin {
         embedded_asset!(app, "shaders/pose.wgsl");
         embedded_asset!(app, "shaders/sway.wgsl");
         give_cameras_viewpoints(app);
-        app.add_plugins((MaterialPlugin::<SwayMaterial>::default(), compute::plugin, mend::plugin))
+        app.add_plugins((MaterialPlugin::<SwayMaterial>::default(), compute::plugin, writes::plugin, mend::plugin))
             .init_resource::<StandBuffers>()
             .init_resource::<StandTables>()
             .init_resource::<PoseJob>()
@@ -67,7 +69,7 @@ impl Plugin for SwayDrawPlugin {
             .register_type::<TreeLighting>()
             .init_resource::<Tailoring>()
             .init_resource::<Wardrobe>()
-            .add_message::<SpeciesDressed>()
+            .add_message::<StageDressed>()
             .add_observer(dismiss_tree)
             .configure_sets(PostUpdate, WindwoodSystems::Upload.after(TransformSystems::Propagate))
             .init_resource::<Roused>()
@@ -96,7 +98,11 @@ impl Plugin for SwayDrawPlugin {
         let light = (find_lights, relight::<SwayExtension>.run_if(resource_changed::<TreeLights>)).chain();
         app.add_systems(Update, (dress, light)).add_systems(
             PostUpdate,
-            upload.chain().after(VisibilitySystems::VisibilityPropagate).in_set(WindwoodSystems::Upload),
+            upload
+                .chain()
+                .after(VisibilitySystems::VisibilityPropagate)
+                .in_set(WindwoodSystems::Upload)
+                .run_if(resource_exists::<DrawPath>),
         );
     }
 

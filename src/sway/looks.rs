@@ -16,6 +16,7 @@ use bevy::{
     prelude::*,
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
 };
+use std::collections::VecDeque;
 
 /// What the species look like, as far as they have been prepared.
 #[derive(Resource, Default)]
@@ -34,7 +35,8 @@ struct SpeciesLooks {
 
 /// One variant of a species at one age.
 pub(super) struct VariantLook {
-    step: i32,
+    /// The age.
+    pub step: i32,
     /// From the finest to the coarsest: at least one.
     pub levels: Vec<LevelLook>,
     /// Around all that it does in the winds that blow.
@@ -58,9 +60,13 @@ pub(super) struct Garment {
     pub fades: bool,
 }
 
-/// Message: the looks of a species are there.
+/// Message: the looks of a species at one age are there.
 #[derive(Message, Clone, Copy)]
-pub(super) struct SpeciesDressed(pub AssetId<Species>);
+pub(super) struct StageDressed {
+    pub species: AssetId<Species>,
+    /// See [`VariantLook::step`].
+    pub step: i32,
+}
 
 struct Tailored {
     species: AssetId<Species>,
@@ -72,6 +78,8 @@ struct Tailored {
 /// Looks that are being prepared.
 #[derive(Resource, Default)]
 pub(super) struct Tailoring {
+    /// Stages that wait to be begun.
+    due: VecDeque<(AssetId<Species>, i32)>,
     tasks: Vec<Tailored>,
     style: LevelStyle,
 }
@@ -81,20 +89,21 @@ impl Wardrobe {
         self.looks.get(&species)?.variants.get(&model)
     }
 
-    /// Gives every variant the room that it needs now.
-    pub fn fit_boxes(&mut self, models: &Assets<TreeModel>, exposure: &Exposure) {
+    /// Gives every variant the room that it needs now, and says whether that is another for any.
+    pub fn fit_boxes(&mut self, models: &Assets<TreeModel>, exposure: &Exposure) -> bool {
+        let mut is_any = false;
         for SpeciesLooks { phenology, variants, .. } in self.looks.values_mut() {
             for (id, variant) in variants {
-                if let Some(model) = models.get(*id) {
-                    variant.bounds = exposure.aabb(model, phenology);
-                }
+                let bounds = models.get(*id).map_or(variant.bounds, |model| exposure.aabb(model, phenology));
+                is_any |= std::mem::replace(&mut variant.bounds, bounds) != bounds;
             }
         }
+        is_any
     }
 }
 
-/// Starts preparing the looks of species that were baked, or of all when the style of levels is another, and forgets those
-/// that are gone.
+/// Starts preparing the looks of stages that were baked, or of all when the style of levels is another, one a frame; and
+/// forgets those of species that are gone.
 pub(super) fn start_tailoring(
     mut baked: MessageReader<SpeciesBaked>,
     mut events: MessageReader<AssetEvent<Species>>,
@@ -105,27 +114,29 @@ pub(super) fn start_tailoring(
     mut wardrobe: ResMut<Wardrobe>,
     mut stand: ResMut<Stand>,
 ) {
-    let tailoring = tailoring.bypass_change_detection();
-    let mut due: Vec<_> = baked.read().map(|&SpeciesBaked { species, step }| (species, step)).collect();
-    if tailoring.style != sight.style() {
-        tailoring.style = sight.style();
-        due = grove.stages().collect();
-        due.sort_unstable();
+    let Tailoring { due, tasks, style } = tailoring.bypass_change_detection();
+    due.extend(baked.read().map(|&SpeciesBaked { species, step }| (species, step)));
+    if *style != sight.style() {
+        *style = sight.style();
+        due.clear();
+        due.extend(grove.stages());
+        due.make_contiguous().sort_unstable();
     }
-    for (id, step) in due {
-        let Some(entry) = grove.get(id) else { continue };
-        let Some(stage) = entry.stages.get(&step) else { continue };
-        let (species, style, generation) = (entry.species.clone(), tailoring.style, stage.generation);
+    if let Some((id, step)) = due.pop_front()
+        && let Some(entry) = grove.get(id)
+        && let Some(stage) = entry.stages.get(&step)
+    {
+        let (species, style, generation) = (entry.species.clone(), *style, stage.generation);
         let variants: Vec<TreeModel> = stage.models.iter().filter_map(|model| models.get(model).cloned()).collect();
-        tailoring.tasks.retain(|other| (other.species, other.step) != (id, step));
+        tasks.retain(|other| (other.species, other.step) != (id, step));
         let painted = wardrobe.looks.get(&id).is_some_and(|looks| looks.generation == generation)
-            || tailoring.tasks.iter().any(|other| (other.species, other.generation) == (id, generation));
+            || tasks.iter().any(|other| (other.species, other.generation) == (id, generation));
         let task = AsyncComputeTaskPool::get().spawn(async move { cut(&species, !painted, variants, style) });
-        tailoring.tasks.push(Tailored { species: id, step, generation, task });
+        tasks.push(Tailored { species: id, step, generation, task });
     }
     for event in events.read() {
         if let AssetEvent::Removed { id } = event {
-            tailoring.tasks.retain(|other| other.species != *id);
+            tasks.retain(|other| other.species != *id);
             if let Some(looks) = wardrobe.looks.remove(id) {
                 looks.variants.into_keys().for_each(|model| stand.remove_model(model));
             }
@@ -143,40 +154,32 @@ pub(super) struct Atelier<'w> {
     dyer: Dyer<'w>,
 }
 
-/// Takes over looks that are prepared.
+/// Takes over looks that are prepared, one stage a frame.
 pub(super) fn finish_tailoring(
     mut tailoring: ResMut<Tailoring>,
     grove: Res<Grove>,
     mut wardrobe: ResMut<Wardrobe>,
     mut atelier: Atelier,
-    mut dressed: MessageWriter<SpeciesDressed>,
+    mut dressed: MessageWriter<StageDressed>,
 ) {
-    if tailoring.tasks.is_empty() {
-        return;
+    let tasks = &tailoring.tasks;
+    // The first of a species brings the textures for all.
+    let is_first = |number: usize| tasks[..number].iter().all(|other| other.species != tasks[number].species);
+    let ready = (0..tasks.len()).find(|&number| is_first(number) && tasks[number].task.is_finished());
+    let Some(number) = ready else { return };
+    let Tailored { species, step, generation, mut task } = tailoring.tasks.remove(number);
+    let Some(cut) = block_on(poll_once(&mut task)) else { return };
+    let Some(entry) = grove.get(species) else { return };
+    let Some(stage) = entry.stages.get(&step).filter(|stage| stage.generation == generation) else { return };
+    if let Some(painted) = cut.painted {
+        let outfits = atelier.dyer.outfits(&entry.species, painted);
+        let variants = wardrobe.looks.remove(&species).map(|old| old.variants).unwrap_or_default();
+        let phenology = entry.species.phenology;
+        wardrobe.looks.insert(species, SpeciesLooks { generation, phenology, outfits, variants });
     }
-    // In the order in which they were begun: the first of a species brings the textures for all.
-    let mut waiting = Vec::new();
-    for mut tailored in std::mem::take(&mut tailoring.tasks) {
-        let Tailored { species, step, generation, .. } = tailored;
-        let first_is_missing = waiting.iter().any(|other: &Tailored| other.species == species);
-        let cut = if first_is_missing { None } else { block_on(poll_once(&mut tailored.task)) };
-        let Some(cut) = cut else {
-            waiting.push(tailored);
-            continue;
-        };
-        let stage = grove.get(species).and_then(|entry| Some((entry, entry.stages.get(&step)?)));
-        let Some((entry, stage)) = stage.filter(|(_, stage)| stage.generation == generation) else { continue };
-        if let Some(textures) = cut.textures {
-            let outfits = atelier.dyer.outfits(&entry.species, &textures);
-            let variants = wardrobe.looks.remove(&species).map(|old| old.variants).unwrap_or_default();
-            let phenology = entry.species.phenology;
-            wardrobe.looks.insert(species, SpeciesLooks { generation, phenology, outfits, variants });
-        }
-        let Some(looks) = wardrobe.looks.get_mut(&species) else { continue };
-        atelier.sew(looks, step, &stage.models, cut.variants);
-        dressed.write(SpeciesDressed(species));
-    }
-    tailoring.tasks = waiting;
+    let Some(looks) = wardrobe.looks.get_mut(&species) else { return };
+    atelier.sew(looks, step, &stage.models, cut.variants);
+    dressed.write(StageDressed { species, step });
 }
 
 impl Atelier<'_> {
@@ -201,8 +204,8 @@ impl Atelier<'_> {
     fn level(&mut self, LevelCut { wood, leaves, nested }: LevelCut, outfits: &SpeciesOutfits) -> LevelLook {
         let mut garment = |Piece { mesh, cloth }: Piece| Garment {
             mesh: self.meshes.add(mesh),
-            outfit: self.dyer.of(&cloth, outfits),
             fades: cloth.fades(),
+            outfit: self.dyer.of(cloth, outfits),
         };
         LevelLook { wood: garment(wood), leaves: leaves.map(garment), nested }
     }

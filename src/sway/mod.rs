@@ -14,6 +14,8 @@ mod plugin;
 mod response;
 
 #[cfg(feature = "render")]
+mod chunks;
+#[cfg(feature = "render")]
 mod compute;
 #[cfg(feature = "render")]
 mod cut;
@@ -23,6 +25,8 @@ mod detail;
 mod draw;
 #[cfg(feature = "render")]
 mod draw_plugin;
+#[cfg(feature = "render")]
+mod dress;
 #[cfg(feature = "render")]
 mod exposure;
 #[cfg(feature = "render")]
@@ -36,6 +40,8 @@ mod mend;
 #[cfg(feature = "render")]
 mod outfits;
 #[cfg(feature = "render")]
+mod painted;
+#[cfg(feature = "render")]
 mod ranges;
 #[cfg(feature = "render")]
 mod rouse;
@@ -44,7 +50,11 @@ mod rows;
 #[cfg(feature = "render")]
 mod stand;
 #[cfg(feature = "render")]
+mod table;
+#[cfg(feature = "render")]
 mod upload;
+#[cfg(feature = "render")]
+mod writes;
 
 pub use active::{ActiveSway, FLUTTER_PERIOD_S, WeightedResponse};
 pub use articulated::TreePose;

@@ -5,17 +5,13 @@ use super::{
     draw::DrawPath,
     lighting::TreeLights,
     material::{LeafUniform, SeasonUniform, SwayExtension, SwayMaterial},
+    painted::Painted,
     upload::StandBuffers,
 };
-use crate::{
-    shading::{ALL_MIPS, image},
-    texture::TextureData,
-    tree::{Species, bark::BarkTextures, growth::Growth, painting::SpeciesTextures},
-};
+use crate::tree::{Species, growth::Growth};
 use bevy::{
     asset::RenderAssetUsages,
     ecs::system::SystemParam,
-    image::ImageAddressMode,
     prelude::*,
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
@@ -48,25 +44,34 @@ pub(super) struct Dyer<'w> {
     lights: Res<'w, TreeLights>,
 }
 
-/// Coarsest mip of masked foliage that is used: beyond it a spray is a few texels, between which no alpha passes the mask,
-/// and distant crowns would go bare.
-const FOLIAGE_LOD_LIMIT: f32 = 3.0;
-
 impl Dyer<'_> {
     /// What a species wears that is painted like this.
-    pub fn outfits(&mut self, species: &Species, textures: &SpeciesTextures) -> SpeciesOutfits {
+    pub fn outfits(&mut self, species: &Species, painted: Painted) -> SpeciesOutfits {
         let extension = SwayExtension {
             poses: self.shared.poses.clone(),
             beams: self.shared.beams.clone(),
             trees: self.shared.trees.clone(),
             frame: self.shared.frame.clone(),
             leaf: LeafUniform::new(&species.foliage.response, matches!(species.growth, Growth::Gardner(_))),
-            season: SeasonUniform::new(&species.phenology, textures.foliage_colour()),
+            season: SeasonUniform::new(&species.phenology, painted.foliage_colour),
             lights: *self.lights,
         };
-        let bark = self.bark(&textures.bark);
+        let surface = self.images.add(painted.bark_surface);
+        let bark = StandardMaterial {
+            base_color_texture: Some(self.images.add(painted.bark)),
+            normal_map_texture: Some(self.images.add(painted.bark_normal)),
+            occlusion_texture: Some(surface.clone()),
+            metallic_roughness_texture: Some(surface),
+            perceptual_roughness: 1.0,
+            reflectance: 0.2,
+            ..default()
+        };
         let fading_bark = StandardMaterial { alpha_mode: AlphaMode::Mask(0.5), ..bark.clone() };
-        let foliage = self.foliage(species, textures);
+        let foliage = StandardMaterial {
+            base_color_texture: Some(self.images.add(painted.foliage)),
+            normal_map_texture: painted.foliage_normal.map(|normal| self.images.add(normal)),
+            ..leafy(species.foliage.translucency)
+        };
         SpeciesOutfits {
             bark: self.outfit(bark, &extension),
             fading_bark: self.outfit(fading_bark, &extension),
@@ -77,17 +82,18 @@ impl Dyer<'_> {
     }
 
     /// The outfit of a piece.
-    pub fn of(&mut self, cloth: &Cloth, outfits: &SpeciesOutfits) -> Outfit {
+    pub fn of(&mut self, cloth: Cloth, outfits: &SpeciesOutfits) -> Outfit {
         match cloth {
             Cloth::Bark => outfits.bark.clone(),
             Cloth::FadingBark => outfits.fading_bark.clone(),
             Cloth::Foliage => outfits.foliage.clone(),
             Cloth::Envelope(colour) => {
-                let material = self.envelope(colour, outfits.translucency);
+                let colour = Some(self.images.add(*colour));
+                let material = StandardMaterial { base_color_texture: colour, ..leafy(outfits.translucency) };
                 self.outfit(material, &outfits.extension)
             }
             Cloth::Plain(colours) => {
-                let material = self.plain(*colours);
+                let material = self.plain(colours);
                 self.outfit(material, &outfits.extension)
             }
         }
@@ -96,33 +102,6 @@ impl Dyer<'_> {
     fn outfit(&mut self, base: StandardMaterial, extension: &SwayExtension) -> Outfit {
         let swaying = SwayMaterial { base: base.clone(), extension: extension.clone() };
         Outfit { swaying: self.path.sways.then(|| self.swaying.add(swaying)), still: self.still.add(base) }
-    }
-
-    fn bark(&mut self, textures: &BarkTextures) -> StandardMaterial {
-        let surface = self.images.add(image(&textures.surface, ImageAddressMode::Repeat, ALL_MIPS));
-        StandardMaterial {
-            base_color_texture: Some(self.images.add(image(&textures.base_colour, ImageAddressMode::Repeat, ALL_MIPS))),
-            normal_map_texture: Some(self.images.add(image(&textures.normal, ImageAddressMode::Repeat, ALL_MIPS))),
-            occlusion_texture: Some(surface.clone()),
-            metallic_roughness_texture: Some(surface),
-            perceptual_roughness: 1.0,
-            reflectance: 0.2,
-            ..default()
-        }
-    }
-
-    fn foliage(&mut self, species: &Species, textures: &SpeciesTextures) -> StandardMaterial {
-        let mut add = |texture| self.images.add(image(texture, ImageAddressMode::ClampToEdge, FOLIAGE_LOD_LIMIT));
-        StandardMaterial {
-            base_color_texture: Some(add(&textures.foliage)),
-            normal_map_texture: textures.foliage_normal.as_ref().map(add),
-            ..leafy(species.foliage.translucency)
-        }
-    }
-
-    fn envelope(&mut self, colour: &TextureData, translucency: f32) -> StandardMaterial {
-        let colour = self.images.add(image(colour, ImageAddressMode::Repeat, ALL_MIPS));
-        StandardMaterial { base_color_texture: Some(colour), ..leafy(translucency) }
     }
 
     /// Two texels, linear: of the trunk and of the crown.

@@ -1,7 +1,6 @@
 //! The tables as the shaders read them. Each layout here has its twin in `shaders/beam.wgsl` or `shaders/wind.wgsl`.
 
 use crate::{dynamics::pose::BeamDynamics, sway::response::WindResponse};
-use bevy::math::Vec4;
 use bytemuck::{Pod, Zeroable};
 
 /// `BeamRow` of the shader: one beam of a model.
@@ -99,21 +98,25 @@ pub(super) fn pose_chunk(row: u32, chunk: u32) -> u32 {
 /// Rows of `vec4` before the direction map in a slot; `HEADER` of the shader.
 const HEADER: usize = 4;
 
-/// One wind as the shader reads it: header, direction map, responses, velocities.
-pub(super) fn slot_rows(wind: &WindResponse) -> Vec<[f32; 4]> {
+/// One wind as the shader reads it, in rows of `vec4`: header, direction map, responses, velocities.
+pub(super) fn pack_slot(wind: &WindResponse) -> Vec<u8> {
     let (frame, table, map) = (wind.field.frame(), &wind.table, wind.basis.map());
     let along = frame.along;
     let across = frame.across;
     let spacing = wind.field.settings().resolution.column_spacing_m;
-    let mut rows = Vec::with_capacity(HEADER + 4 * map.texels().len() + table.values.len() + table.velocities.len());
-    rows.push([along.x, along.y, along.z, wind.field.convective_speed_m_s()]);
-    rows.push([across.x, across.y, across.z, spacing]);
-    rows.push([table.classes.count as f32, table.columns as f32, table.samples as f32, table.time_step_s]);
-    rows.push([map.size() as f32, 1.0 / table.classes.ratio.ln(), 0.0, 0.0]);
-    rows.extend_from_slice(bytemuck::cast_slice(map.texels()));
-    rows.extend(table.values.iter().map(Vec4::to_array));
-    rows.extend(table.velocities.iter().map(Vec4::to_array));
-    rows
+    let header: [[f32; 4]; HEADER] = [
+        [along.x, along.y, along.z, wind.field.convective_speed_m_s()],
+        [across.x, across.y, across.z, spacing],
+        [table.classes.count as f32, table.columns as f32, table.samples as f32, table.time_step_s],
+        [map.size() as f32, 1.0 / table.classes.ratio.ln(), 0.0, 0.0],
+    ];
+    let parts: [&[u8]; 4] = [
+        bytemuck::cast_slice(&header),
+        bytemuck::cast_slice(map.texels()),
+        bytemuck::cast_slice(&table.values),
+        bytemuck::cast_slice(&table.velocities),
+    ];
+    parts.concat()
 }
 
 #[cfg(test)]

@@ -5,9 +5,11 @@
 //! here runs for a tree that stands.
 
 use super::{
+    chunks::Chunks,
     draw::{DrawPath, Worn},
     ranges::Ranges,
-    rows::{BeamRow, CHUNK, POSE_BYTES, TreeRow, pose_chunk},
+    rows::{BeamRow, POSE_BYTES, TreeRow},
+    table::Table,
 };
 use crate::tree::{Tree, TreeModel};
 use bevy::{platform::collections::HashMap, prelude::*};
@@ -23,11 +25,13 @@ pub(super) struct Standing {
 /// The tables of the stand, as they are on the processor.
 #[derive(Resource)]
 pub(super) struct Stand {
-    rows: Vec<TreeRow>,
+    pub trees: Table<TreeRow>,
+    pub beams: Table<BeamRow>,
+    /// What is posed.
+    pub chunks: Chunks,
     /// What else is known of each row's tree.
     seats: Vec<Seat>,
     row_places: Ranges,
-    beams: Vec<BeamRow>,
     beam_places: Ranges,
     models: HashMap<AssetId<TreeModel>, ModelRows>,
     poses: Allocator,
@@ -36,10 +40,6 @@ pub(super) struct Stand {
     /// Whether a tree that is seen stands still for want of poses, and whether some were given back since.
     is_short: bool,
     has_more: bool,
-    /// Whether `rows`, `beams` or what is posed have changed since they were last sent.
-    pub rows_changed: bool,
-    pub beams_changed: bool,
-    pub posed_changed: bool,
 }
 
 #[derive(Clone, Default)]
@@ -47,7 +47,21 @@ struct Seat {
     /// Of its tree, whether it is posed or not.
     beams: u32,
     is_seen: bool,
-    poses: Option<Allocation>,
+    posed: Option<Posed>,
+}
+
+#[derive(Clone)]
+struct Posed {
+    poses: Allocation,
+    /// Where its chunks lie.
+    first_chunk: u32,
+}
+
+impl Seat {
+    /// Poses that its tree needs: one pose more holds the wind at the tree.
+    fn poses(&self) -> u32 {
+        self.beams + 1
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -66,19 +80,17 @@ impl Stand {
     /// A stand with room for so many poses at once.
     pub fn new(pose_limit: u32) -> Self {
         Self {
-            rows: Vec::new(),
+            trees: Table::default(),
+            beams: Table::default(),
+            chunks: Chunks::default(),
             seats: Vec::new(),
             row_places: Ranges::default(),
-            beams: Vec::new(),
             beam_places: Ranges::default(),
             models: HashMap::default(),
             poses: Allocator::with_max_allocs(pose_limit, ROW_LIMIT),
             pose_end: 0,
             is_short: false,
             has_more: false,
-            rows_changed: false,
-            beams_changed: false,
-            posed_changed: false,
         }
     }
 
@@ -89,12 +101,11 @@ impl Stand {
             return;
         }
         let first = self.beam_places.take(count);
-        self.beams.resize(self.beam_places.end as usize, BeamRow::default());
-        for (row, beam) in self.beams[first as usize..].iter_mut().zip(beams) {
-            *row = beam;
+        self.beams.reach(self.beam_places.end);
+        for (row, beam) in (first..).zip(beams) {
+            self.beams.write(row, beam);
         }
         self.models.insert(id, ModelRows { first, count });
-        self.beams_changed = true;
     }
 
     /// Gives the beams of a model back, once no tree has it.
@@ -111,23 +122,21 @@ impl Stand {
             return None;
         }
         let row = self.row_places.take(1);
-        self.rows.resize(self.row_places.end as usize, TreeRow::default());
+        self.trees.reach(self.row_places.end);
         self.seats.resize(self.row_places.end as usize, Seat::default());
         self.seats[row as usize] = Seat { beams: model.count, ..default() };
-        self.rows[row as usize] = TreeRow { first_beam: model.first, ..default() };
-        self.rows_changed = true;
+        self.trees.write(row, TreeRow { first_beam: model.first, ..default() });
         Some(Standing { row })
     }
 
     /// Writes where a tree stands, how far it is ahead of the season, years, and its height while its scale is 1, m.
     pub fn place(&mut self, standing: Standing, at: &GlobalTransform, season_shift: f32, height_m: f32) {
         let (scale, rotation, translation) = at.to_scale_rotation_translation();
-        let Some(row) = self.rows.get_mut(standing.row as usize) else { return };
+        let Some(row) = self.trees.get_mut(standing.row) else { return };
         row.rotation = rotation.to_array();
         row.position = translation.to_array();
         row.scale = scale.y.max(f32::MIN_POSITIVE);
         row.season_and_height = TreeRow::season_and_height(season_shift, height_m * row.scale);
-        self.rows_changed = true;
     }
 
     /// Has a tree posed that is seen, as long as there are poses, and no longer when it is not.
@@ -135,36 +144,47 @@ impl Stand {
         let Some(seat) = self.seats.get_mut(standing.row as usize) else { return };
         seat.is_seen = is_seen;
         if is_seen {
-            self.pose(standing.row as usize);
+            self.pose(standing.row);
         } else {
-            self.rest(standing.row as usize);
+            self.rest(standing.row);
         }
     }
 
-    fn pose(&mut self, row: usize) {
-        let seat = &mut self.seats[row];
-        if seat.poses.is_some() {
+    fn pose(&mut self, row: u32) {
+        let seat = &mut self.seats[row as usize];
+        if seat.posed.is_some() {
             return;
         }
-        // One pose more holds the wind at the tree.
-        let length = seat.beams + 1;
-        let Some(poses) = self.poses.allocate(length) else {
+        let Some(poses) = self.poses.allocate(seat.poses()) else {
             self.is_short = true;
             return;
         };
-        seat.poses = Some(poses);
-        self.rows[row].first_pose = poses.offset;
-        self.rows[row].beam_count = seat.beams;
-        self.pose_end = self.pose_end.max(poses.offset + length);
-        (self.rows_changed, self.posed_changed) = (true, true);
+        seat.posed = Some(Posed { poses, first_chunk: self.chunks.add(row, seat.poses()) });
+        self.pose_end = self.pose_end.max(poses.offset + seat.poses());
+        if let Some(tree) = self.trees.get_mut(row) {
+            (tree.first_pose, tree.beam_count) = (poses.offset, seat.beams);
+        }
     }
 
-    fn rest(&mut self, row: usize) {
-        let Some(poses) = self.seats[row].poses.take() else { return };
+    fn rest(&mut self, row: u32) {
+        let seat = &mut self.seats[row as usize];
+        let Some(Posed { poses, first_chunk }) = seat.posed.take() else { return };
         self.poses.free(poses);
+        self.chunks.remove(first_chunk, seat.poses());
         self.has_more = true;
-        self.rows[row].beam_count = 0;
-        (self.rows_changed, self.posed_changed) = (true, true);
+        if let Some(tree) = self.trees.get_mut(row) {
+            tree.beam_count = 0;
+        }
+    }
+
+    /// Keeps together what is posed, once trees have come and gone.
+    pub fn tidy(&mut self) {
+        let Self { chunks, seats, .. } = self;
+        chunks.tidy(|row, first_chunk| {
+            if let Some(posed) = &mut seats[row as usize].posed {
+                posed.first_chunk = first_chunk;
+            }
+        });
     }
 
     /// Poses trees that are seen and for which there were no poses before, if there are now; says whether some still stand
@@ -172,8 +192,8 @@ impl Stand {
     fn relieve(&mut self) -> bool {
         if self.is_short && self.has_more {
             self.is_short = false;
-            for row in 0..self.seats.len() {
-                if self.seats[row].is_seen {
+            for row in 0..self.trees.len() {
+                if self.seats[row as usize].is_seen {
                     self.pose(row);
                 }
             }
@@ -182,43 +202,25 @@ impl Stand {
         self.is_short
     }
 
-    fn dismiss(&mut self, standing: Standing) {
-        let row = standing.row as usize;
-        if row >= self.rows.len() {
+    fn dismiss(&mut self, Standing { row }: Standing) {
+        if row >= self.trees.len() {
             return;
         }
         self.rest(row);
-        self.seats[row] = Seat::default();
-        self.rows[row] = TreeRow::default();
-        self.row_places.give_back(standing.row, 1);
-        self.rows_changed = true;
-    }
-
-    pub fn rows(&self) -> &[TreeRow] {
-        &self.rows
-    }
-
-    pub fn beams(&self) -> &[BeamRow] {
-        &self.beams
+        self.seats[row as usize] = Seat::default();
+        self.trees.write(row, TreeRow::default());
+        self.row_places.give_back(row, 1);
     }
 
     /// What its tables have on the graphics processor, bytes: both halves of the poses, with their reserve.
     pub fn bytes(&self) -> usize {
         let poses = 2 * (self.pose_end + self.pose_end / 2) as usize * POSE_BYTES;
-        size_of_val(self.rows.as_slice()) + size_of_val(self.beams.as_slice()) + poses
+        self.trees.bytes() + self.beams.bytes() + self.chunks.table.bytes() + poses
     }
 
     /// Poses that are in use, or have been.
     pub fn pose_count(&self) -> u32 {
         self.pose_end
-    }
-
-    /// What is posed, a workgroup each: see [`pose_chunk`].
-    pub fn chunks(&self) -> Vec<u32> {
-        let posed = self.rows.iter().enumerate().filter(|(_, row)| row.beam_count > 0);
-        // One pose more than there are beams is that of the wind.
-        let chunks_of = |row: &TreeRow| 0..(row.beam_count + 1).div_ceil(CHUNK);
-        posed.flat_map(|(number, row)| chunks_of(row).map(move |chunk| pose_chunk(number as u32, chunk))).collect()
     }
 }
 
@@ -276,7 +278,7 @@ mod tests {
     }
 
     fn posed(stand: &Stand) -> usize {
-        stand.rows().iter().filter(|row| row.beam_count == BEAMS).count()
+        stand.trees.rows().iter().filter(|row| row.beam_count == BEAMS).count()
     }
 
     #[test]
@@ -292,8 +294,8 @@ mod tests {
             }
             standing.into_iter().for_each(|tree| stand.dismiss(tree));
         }
-        assert_eq!((stand.pose_count(), stand.rows().len()), (poses, 100));
-        assert!(stand.rows().iter().all(|row| row.beam_count == 0));
+        assert_eq!((stand.pose_count(), stand.trees.rows().len()), (poses, 100));
+        assert!(stand.trees.rows().iter().all(|row| row.beam_count == 0));
     }
 
     #[test]
@@ -326,6 +328,7 @@ mod tests {
             }
         }
         let mut taken: Vec<(u32, u32)> = stand
+            .trees
             .rows()
             .iter()
             .filter(|row| row.beam_count > 0)

@@ -1,5 +1,5 @@
-//! Sends what changed to the graphics processor: the clock each frame, a wind's tables when a new wind begins, the rows
-//! of trees when trees come or go.
+//! Sends what changed to the graphics processor: the clock each frame, a wind's tables when a new wind begins, and the rows
+//! of those trees that come, go, move, or are seen or no longer seen.
 
 use super::{
     active::{ActiveSway, leaf_clock_s, wrapped_time_s},
@@ -8,13 +8,18 @@ use super::{
     draw::DrawPath,
     material::SwayMaterial,
     response::WindResponse,
-    rows::{FrameRow, POSE_BYTES, slot_rows},
+    rows::{FrameRow, POSE_BYTES},
     stand::Stand,
+    table::Table,
+    writes::BufferWrites,
 };
 use crate::{tree::Season, wind::WindClock};
 use bevy::{asset::RenderAssetUsages, ecs::system::SystemParam, prelude::*, render::storage::ShaderBuffer};
 use bytemuck::Pod;
 use std::sync::Arc;
+
+/// Bytes of a buffer of which nothing is known yet. The frame's has room in that, and keeps it.
+const FIRST_BYTES: usize = 256;
 
 /// The buffers that all trees share.
 #[derive(Resource)]
@@ -46,7 +51,7 @@ impl FromWorld for StandBuffers {
     fn from_world(world: &mut World) -> Self {
         let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
         // An empty table is never read; it only has to be there.
-        let mut empty = || buffers.add(ShaderBuffer::new(&[0; 256], RenderAssetUsages::RENDER_WORLD));
+        let mut empty = || buffers.add(ShaderBuffer::with_size(FIRST_BYTES, RenderAssetUsages::RENDER_WORLD));
         Self {
             winds: [empty(), empty()],
             beams: empty(),
@@ -104,48 +109,38 @@ impl FromWorld for StandTables {
 pub(super) struct Uploads<'w> {
     shared: ResMut<'w, StandBuffers>,
     buffers: ResMut<'w, Assets<ShaderBuffer>>,
+    writes: ResMut<'w, BufferWrites>,
     materials: ResMut<'w, Assets<SwayMaterial>>,
     tables: ResMut<'w, StandTables>,
 }
 
 impl Uploads<'_> {
-    /// Writes a whole table. One of another size than before is another buffer, to which materials must be bound anew.
-    fn write<T: Pod>(&mut self, handle: &Handle<ShaderBuffer>, rows: &[T]) {
-        if self.replace(handle, rows) {
-            self.shared.stale_materials = 2;
+    /// Sends the rows of a table that were written. One that has outgrown its buffer gets another.
+    fn send<T: Pod + Default>(&mut self, handle: &Handle<ShaderBuffer>, table: &mut Table<T>) {
+        if table.make_room().is_some() {
+            self.renew(handle, table.bytes());
         }
+        let size = table.bytes() as u64;
+        table.send(|first, rows| {
+            let offset = u64::from(first) * size_of::<T>() as u64;
+            self.writes.write(handle, size, offset, bytemuck::cast_slice(rows));
+        });
     }
 
-    /// Writes a whole table, and says whether it is of another size than before.
-    fn replace<T: Pod>(&mut self, handle: &Handle<ShaderBuffer>, rows: &[T]) -> bool {
-        let Some(mut buffer) = self.buffers.get_mut(handle) else { return false };
-        let bytes: &[u8] = bytemuck::cast_slice(rows);
-        let resized = buffer.buffer_description.size != bytes.len() as u64;
-        buffer.buffer_description.size = bytes.len() as u64;
-        buffer.data = Some(bytes.to_vec());
-        resized
-    }
-
-    /// Tells what is posed. No material is bound to that.
-    fn pose(&mut self, chunks: &[u32], job: &mut PoseJob) {
-        job.chunks = chunks.len() as u32;
-        if !chunks.is_empty() {
-            let handle = self.shared.chunks.clone();
-            self.replace(&handle, chunks);
+    /// Another buffer in place of one, to which materials must be bound anew.
+    fn renew(&mut self, handle: &Handle<ShaderBuffer>, bytes: usize) {
+        if let Some(mut buffer) = self.buffers.get_mut(handle) {
+            *buffer = ShaderBuffer::with_size(bytes, RenderAssetUsages::RENDER_WORLD);
+            self.shared.stale_materials = 2;
         }
     }
 
     /// Makes room for poses: half as many again as are needed, so that a growing stand seldom needs it.
     fn make_room(&mut self, poses: u32) {
-        if poses <= self.shared.pose_capacity {
-            return;
-        }
-        let capacity = poses + poses / 2;
-        self.shared.pose_capacity = capacity;
-        self.shared.stale_materials = 2;
-        let size = 2 * capacity as usize * POSE_BYTES;
-        if let Some(mut buffer) = self.buffers.get_mut(&self.shared.poses) {
-            *buffer = ShaderBuffer::with_size(size, RenderAssetUsages::RENDER_WORLD);
+        if poses > self.shared.pose_capacity {
+            self.shared.pose_capacity = poses + poses / 2;
+            let handle = self.shared.poses.clone();
+            self.renew(&handle, 2 * self.shared.pose_capacity as usize * POSE_BYTES);
         }
     }
 
@@ -164,24 +159,24 @@ impl Uploads<'_> {
 
 /// Rewrites a slot when another wind has moved into it; its weight is 0 at that moment. Under a wind whose tables are too
 /// large for the device trees stand at rest.
-pub(super) fn upload_winds(
-    sway: Res<ActiveSway>,
-    path: Option<Res<DrawPath>>,
-    mut warned: Local<bool>,
-    mut uploads: Uploads,
-) {
+pub(super) fn upload_winds(sway: Res<ActiveSway>, path: Res<DrawPath>, mut warned: Local<bool>, mut uploads: Uploads) {
     for (slot, response) in sway.slots().into_iter().enumerate() {
         let Some(response) = response else { continue };
         if uploads.shared.sent[slot].as_ref().is_some_and(|sent| Arc::ptr_eq(sent, response)) {
             continue;
         }
-        let rows = slot_rows(response);
-        let bytes = size_of_val(rows.as_slice()) as u64;
-        let limit = path.as_ref().map_or(u64::MAX, |path| path.table_limit_bytes);
+        let packed = response.take_packed();
+        let (bytes, limit) = (packed.len() as u64, path.table_limit_bytes);
         uploads.shared.fits[slot] = bytes <= limit;
         if bytes <= limit {
             let handle = uploads.shared.winds[slot].clone();
-            uploads.write(&handle, &rows);
+            if let Some(mut buffer) = uploads.buffers.get_mut(&handle) {
+                let is_resized = buffer.buffer_description.size != bytes;
+                (buffer.buffer_description.size, buffer.data) = (bytes, Some(packed));
+                if is_resized {
+                    uploads.shared.stale_materials = 2;
+                }
+            }
         } else if !*warned {
             warn!("windwood: the tables of this wind have {bytes} bytes, the device allows {limit}; trees stand still");
             *warned = true;
@@ -190,7 +185,7 @@ pub(super) fn upload_winds(
     }
 }
 
-/// Sends the rows of trees and beams that have changed, and the clock of this frame.
+/// Sends the rows that were written since the last frame, and the clock of this one.
 pub(super) fn upload_frame(
     sway: Res<ActiveSway>,
     clock: Res<WindClock>,
@@ -200,21 +195,16 @@ pub(super) fn upload_frame(
     mut uploads: Uploads,
     mut job: ResMut<PoseJob>,
 ) {
-    let rows_changed = stand.rows_changed || stand.beams_changed;
-    if rows_changed {
-        let (trees, beams) = (uploads.shared.trees.clone(), uploads.shared.beams.clone());
-        if stand.rows_changed && !stand.rows().is_empty() {
-            uploads.write(&trees, stand.rows());
-        }
-        if stand.beams_changed {
-            uploads.write(&beams, stand.beams());
-        }
-        (stand.rows_changed, stand.beams_changed) = (false, false);
-        uploads.make_room(stand.pose_count());
-    }
-    if std::mem::take(&mut stand.posed_changed) {
-        uploads.pose(&stand.chunks(), &mut job);
-    }
+    let stand = &mut *stand;
+    let rows_changed = stand.trees.has_news() || stand.beams.has_news();
+    stand.tidy();
+    let StandBuffers { trees, beams, chunks, .. } = &*uploads.shared;
+    let [trees, beams, chunks] = [trees, beams, chunks].map(Handle::clone);
+    uploads.send(&trees, &mut stand.trees);
+    uploads.send(&beams, &mut stand.beams);
+    uploads.send(&chunks, &mut stand.chunks.table);
+    uploads.make_room(stand.pose_count());
+    job.chunks = stand.chunks.table.len();
     uploads.rebind();
 
     let shared = &mut *uploads.shared;
@@ -229,11 +219,7 @@ pub(super) fn upload_frame(
         fade: sight.ladder.fade,
         ..frame_row(&sway, &clock, shared, job.chunks)
     };
-    let frame = shared.frame.clone();
-    if let Some(mut buffer) = uploads.buffers.get_mut(&frame) {
-        // Extraction takes the bytes away, so a few are allocated anew each frame: 80, whatever the forest.
-        buffer.data = Some(bytemuck::bytes_of(&row).to_vec());
-    }
+    uploads.writes.write(&uploads.shared.frame, FIRST_BYTES as u64, 0, bytemuck::bytes_of(&row));
 }
 
 fn frame_row(sway: &ActiveSway, clock: &WindClock, shared: &StandBuffers, chunk_count: u32) -> FrameRow {

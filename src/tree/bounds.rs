@@ -31,9 +31,43 @@ impl SwayBounds {
     }
 
     /// What both boxes have in common.
-    pub(super) fn intersection(self, other: Self) -> Self {
+    fn intersection(self, other: Self) -> Self {
         Self { min: self.min.max(other.min), max: self.max.min(other.max) }
     }
+}
+
+/// The strength of a wind in steps: of the pressure that it has at most. A box is made for each when a tree is baked, so that
+/// nothing has to be computed for thousands of models in the frame in which another wind begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PressureStep(pub(super) u8);
+
+impl PressureStep {
+    /// Pressure of step 0, m²/s²: a breath of air.
+    const LEAST: f32 = 0.1;
+    /// From one step to the next: tip angles and boxes grow by no more.
+    const RATIO: f32 = 1.3;
+    /// Beyond the last step with a box of its own, of 8,000 m²/s², beams have come to their limit, or may have.
+    pub const LIMIT: Self = Self(44);
+
+    /// The least step whose pressure is not below one; that of one that is no number is the limit.
+    pub fn of(pressure: f32) -> Self {
+        let steps = (pressure.max(Self::LEAST) / Self::LEAST).ln() / Self::RATIO.ln();
+        // Not beyond by a rounding.
+        let step = (steps - 1e-4).ceil();
+        if pressure.is_finite() && step < f32::from(Self::LIMIT.0) { Self(step as u8) } else { Self::LIMIT }
+    }
+
+    /// No wind of this step presses harder, m²/s².
+    fn pressure(self) -> f32 {
+        // More by the rounding of above.
+        Self::LEAST * Self::RATIO.powf(f32::from(self.0) + 2e-4)
+    }
+}
+
+/// The box around all that is bound to the beams at each step below the limit, of which the box is known.
+pub(super) fn bounds_by_step(beams: &[BeamDynamics], reaches_m: &[f32], limit: SwayBounds) -> Box<[SwayBounds]> {
+    let steps = (0..PressureStep::LIMIT.0).map(PressureStep);
+    steps.map(|step| bounds_under(beams, reaches_m, step.pressure()).intersection(limit)).collect()
 }
 
 /// How far the root of a beam has been moved, m, and turned, rad, at most, about a place of its parent.
@@ -57,8 +91,7 @@ impl Carried {
 }
 
 /// The box around all that is bound to the beams while no load on them is above that pressure, m²/s².
-pub(super) fn bounds_under(beams: &[BeamDynamics], reaches_m: &[f32], pressure: f32) -> SwayBounds {
-    let pressure = if pressure.is_nan() { f32::MAX } else { pressure.clamp(0.0, f32::MAX) };
+fn bounds_under(beams: &[BeamDynamics], reaches_m: &[f32], pressure: f32) -> SwayBounds {
     let mut bounds = SwayBounds::FOOT;
     let mut carried: Vec<Carried> = Vec::with_capacity(beams.len());
     for (beam, reach_m) in beams.iter().zip(reaches_m) {
@@ -193,6 +226,22 @@ mod tests {
                     }));
                 }
             }
+        }
+    }
+
+    #[test]
+    fn pressures_are_never_rounded_down() {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
+        for _ in 0..10_000 {
+            let pressure = 10.0_f32.powf(random.random_range(-3.0..3.8));
+            let stepped = PressureStep::of(pressure).pressure();
+            assert!(stepped >= pressure && stepped <= 1.31 * pressure.max(PressureStep::LEAST), "{pressure} {stepped}");
+        }
+        assert_eq!(PressureStep::of(0.0), PressureStep(0));
+        assert_eq!([1e5, f32::INFINITY, f32::NAN].map(PressureStep::of), [PressureStep::LIMIT; 3]);
+        for step in (0..PressureStep::LIMIT.0).map(PressureStep) {
+            let next = PressureStep(step.0 + 1);
+            assert_eq!(PressureStep::of(0.5 * (step.pressure() + next.pressure())), next);
         }
     }
 

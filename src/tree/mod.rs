@@ -28,6 +28,8 @@ pub mod skeleton;
 pub mod species;
 mod tube;
 
+#[cfg(feature = "render")]
+pub(crate) use bounds::PressureStep;
 pub use bounds::SwayBounds;
 pub use components::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Tree, TreeBeams, TreeLeaves};
 pub use grove::{BakedSpecies, BakedStage, Grove, SpeciesBaked, bake_variants};

@@ -1,7 +1,7 @@
 //! A tree, baked: everything that thousands of trees share, and nothing that changes.
 
 use super::{
-    bounds::{SwayBounds, bounds_under, limit_bounds, reaches_m},
+    bounds::{PressureStep, SwayBounds, bounds_by_step, limit_bounds, reaches_m},
     leaf_mesh::{LeafVertices, leaves},
     mechanics::beam_dynamics,
     mesh::{WoodVertices, wood},
@@ -15,18 +15,19 @@ use std::sync::Arc;
 /// One variant of a species: skeleton, beams, vertices, bounds. Immutable once baked.
 #[derive(Asset, TypePath, Clone, Debug)]
 pub struct TreeModel {
-    /// The beams and leaf clusters at rest.
-    pub skeleton: Skeleton,
+    /// The beams and leaf clusters at rest. Shared, as are wood and leaves: whoever cuts a model in the background takes a
+    /// copy of it.
+    pub skeleton: Arc<Skeleton>,
     /// The beams as they are posed, in the order of the skeleton's.
     pub beams: Vec<BeamDynamics>,
-    /// Trunk and branches. Shared, as are the leaves: whoever cuts a model in the background takes a copy of it.
+    /// Trunk and branches.
     pub wood: Arc<WoodVertices>,
     /// The foliage; empty for a bare tree.
     pub leaves: Arc<LeafVertices>,
     /// Box around the tree in every pose that the saturating beams can take, tree-local, m.
     pub bounds: SwayBounds,
-    /// See [`reaches_m`].
-    reaches_m: Vec<f32>,
+    /// The same for weaker winds.
+    bounds_by_step: Box<[SwayBounds]>,
 }
 
 impl TreeModel {
@@ -38,13 +39,21 @@ impl TreeModel {
         let leaves = leaves(species, &skeleton);
         let reaches_m = reaches_m(&beams, &wood, &leaves);
         let bounds = limit_bounds(&beams, &reaches_m);
-        Self { skeleton, beams, wood: Arc::new(wood), leaves: Arc::new(leaves), bounds, reaches_m }
+        let bounds_by_step = bounds_by_step(&beams, &reaches_m, bounds);
+        let (skeleton, wood, leaves) = (Arc::new(skeleton), Arc::new(wood), Arc::new(leaves));
+        Self { skeleton, beams, wood, leaves, bounds, bounds_by_step }
     }
 
     /// Box around the tree in every pose that it takes while no beam's static-equivalent wind pressure is above this,
-    /// tree-local, m. units: m²/s²; one that is no number counts as the greatest.
+    /// tree-local, m; it may be that for a pressure that is greater by less than a third. units: m²/s²; one that is no number
+    /// counts as the greatest.
     pub fn bounds_under(&self, pressure: f32) -> SwayBounds {
-        bounds_under(&self.beams, &self.reaches_m, pressure).intersection(self.bounds)
+        self.bounds_at(PressureStep::of(pressure))
+    }
+
+    /// The same for a step of pressures.
+    pub(crate) fn bounds_at(&self, PressureStep(step): PressureStep) -> SwayBounds {
+        self.bounds_by_step.get(usize::from(step)).copied().unwrap_or(self.bounds)
     }
 
     /// Height of the tree at rest, m.

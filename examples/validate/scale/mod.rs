@@ -26,6 +26,7 @@ use bevy_windwood::{
     },
 };
 use dearest::{Dearest, median_and_p99};
+use leaps::{Acts, Slowest};
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::time::{Duration, Instant};
 
@@ -85,7 +86,11 @@ fn measure(report: &mut Report) -> Result<(), String> {
         }
         report.at_most(median_key, median_ms, 1.0, "all our systems, as if none ran beside another");
         report.at_most(p99_key, p99_ms, 4.0, "the same, the frame that is slower than 99 of 100");
-        let keys = ["turn_ms_1e6", "leap_ms_1e6", "turn_ms_worst_1e6", "leap_ms_worst_1e6"];
+        let keys = [
+            ["turn_ms_1e6", "turn_ms_worst_1e6"],
+            ["leap_ms_1e6", "leap_ms_worst_1e6"],
+            ["wind_ms_1e6", "wind_ms_worst_1e6"],
+        ];
         leaps::tell(report, keys, flown.slowest_ms);
         report.tell("update_ms_median_1e6", update_ms, "a whole update: Bevy's part, and what commands take");
         report.tell("update_ms_p99_1e6", update_p99_ms, "the same");
@@ -134,8 +139,8 @@ struct Flown {
     startup_s: f64,
     known_s: f64,
     bytes_per_tree: f64,
-    /// While turning, and after leaps; of the largest wood.
-    slowest_ms: [[f64; 2]; 2],
+    /// Of turns, leaps and changes of the wind; of the largest wood.
+    slowest_ms: [Slowest; 3],
     stems_m: Vec<Vec3>,
 }
 
@@ -171,9 +176,10 @@ impl Flown {
             startup_s = startup_s.or_else(|| (is_complete && all_have_models(world)).then_some(since_s));
         }
         if trees == LARGEST {
-            flown.slowest_ms = leaps::slowest_ms(&mut app, &mut flight, |app| {
+            let pass = |app: &mut App| {
                 frame(app);
-            });
+            };
+            flown.slowest_ms = Acts { app: &mut app, flight: &mut flight, pass }.slowest_ms();
         }
         (flown.startup_s, flown.known_s) = (startup_s.unwrap_or(f64::NAN), known_s.unwrap_or(f64::NAN));
         let world = app.world_mut();

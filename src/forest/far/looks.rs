@@ -1,7 +1,7 @@
 //! The views of each species that grows in a forest, made in the background.
 
 use super::{
-    material::{FarMaterial, far_material},
+    material::{FarMaterial, FarViews, far_material},
     mesh::MOST_TREES,
     near::NearCells,
 };
@@ -38,9 +38,7 @@ pub(super) struct FarLook {
 
 struct Baked {
     species: Species,
-    summer: [f32; 3],
-    atlas: ViewAtlas,
-    leans: Vec<Lean>,
+    views: FarViews,
 }
 
 impl FarLooks {
@@ -61,7 +59,7 @@ fn bake(species: Species) -> Baked {
     let scenes: Vec<Scene> = models.iter().map(|model| Scene::new(&species, model, &textures)).collect();
     let atlas = ViewAtlas::bake(&scenes, &LevelSettings::default().views);
     let leans = scenes.iter().zip(&models).map(|(scene, model)| Lean::of(scene, model)).collect();
-    Baked { summer: textures.foliage_colour(), atlas, leans, species }
+    Baked { views: FarViews::new(&atlas, leans, textures.foliage_colour()), species }
 }
 
 /// Starts making the views of species that have come or were changed, and takes over those that are made.
@@ -99,10 +97,10 @@ pub(super) fn bake_far_looks(
     }
     let FarLooks { looks, baking } = &mut *looks;
     baking.retain_mut(|(id, task)| {
-        let Some(Baked { species, summer, atlas, leans }) = block_on(poll_once(task)) else { return true };
-        let mut material = far_material(&species, summer, &atlas, &leans, &mut images, &tables, near.buffer.clone());
+        let Some(Baked { species, views }) = block_on(poll_once(task)) else { return true };
+        let (frame, trees) = (views.frame, views.trees);
+        let mut material = far_material(&species, views, &mut images, &tables, near.buffer.clone());
         *material.extension.lights_mut() = *lights;
-        let frame = atlas.frame;
         // Wherever it leans.
         let reach_m = frame.centre.length() + frame.radius_m + frame.half_height_m;
         let handle = match looks.get(id) {
@@ -114,10 +112,7 @@ pub(super) fn bake_far_looks(
             }
             None => materials.add(material),
         };
-        looks.insert(
-            *id,
-            FarLook { material: handle, age: species.age, reach_m, variants: species.variants, trees: atlas.trees },
-        );
+        looks.insert(*id, FarLook { material: handle, age: species.age, reach_m, variants: species.variants, trees });
         false
     });
 }

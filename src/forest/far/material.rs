@@ -2,7 +2,7 @@
 
 use super::mesh::{ATTRIBUTE_FAR, MOST_TREES};
 use crate::{
-    lod::{Lean, ViewAtlas},
+    lod::{Lean, ViewAtlas, ViewFrame},
     shading::{define, image, lay_out},
     sway::{LitAsTrees, SeasonUniform, StandTables, TreeLights},
     tree::Species,
@@ -69,19 +69,37 @@ struct ViewsUniform {
     leans: [Vec4; MOST_TREES as usize],
 }
 
-/// The material of a species' far trees. `summer` is the colour of its leaves, `leans` are those of the atlas's trees.
+/// The views of some trees as the renderer takes them: megabytes, laid out in the background.
+pub(super) struct FarViews {
+    colour: Image,
+    surface: Image,
+    pub frame: ViewFrame,
+    pub trees: u32,
+    across: u32,
+    /// How each tree leans.
+    leans: Vec<Lean>,
+    /// The colour of the leaves.
+    summer: [f32; 3],
+}
+
+impl FarViews {
+    pub fn new(atlas: &ViewAtlas, leans: Vec<Lean>, summer: [f32; 3]) -> Self {
+        let mips = atlas.colour.mips.len().saturating_sub(1) as f32;
+        let [colour, surface] =
+            [&atlas.colour, &atlas.surface].map(|texture| image(texture, ImageAddressMode::ClampToEdge, mips));
+        Self { colour, surface, frame: atlas.frame, trees: atlas.trees, across: atlas.across, leans, summer }
+    }
+}
+
+/// The material of a species' far trees.
 pub(super) fn far_material(
     species: &Species,
-    summer: [f32; 3],
-    atlas: &ViewAtlas,
-    leans: &[Lean],
+    views: FarViews,
     images: &mut Assets<Image>,
     tables: &StandTables,
     near: Handle<ShaderBuffer>,
 ) -> FarMaterial {
     let [wind_a, wind_b] = &tables.winds;
-    let mips = (atlas.colour.mips.len() - 1) as f32;
-    let mut add = |texture| images.add(image(texture, ImageAddressMode::ClampToEdge, mips));
     FarMaterial {
         base: StandardMaterial {
             alpha_mode: AlphaMode::Mask(0.5),
@@ -93,22 +111,22 @@ pub(super) fn far_material(
             ..default()
         },
         extension: FarExtension {
-            colour: add(&atlas.colour),
-            surface: add(&atlas.surface),
+            colour: images.add(views.colour),
+            surface: images.add(views.surface),
             frame: tables.frame.clone(),
             views: ViewsUniform {
-                centre: atlas.frame.centre,
-                radius_m: atlas.frame.radius_m,
-                half_height_m: atlas.frame.half_height_m,
-                across: atlas.across as f32,
+                centre: views.frame.centre,
+                radius_m: views.frame.radius_m,
+                half_height_m: views.frame.half_height_m,
+                across: views.across as f32,
                 translucency: species.foliage.translucency,
-                trees: atlas.trees as f32,
+                trees: views.trees as f32,
                 leans: std::array::from_fn(|tree| {
-                    let Lean { gain, class } = leans.get(tree).copied().unwrap_or_default();
+                    let Lean { gain, class } = views.leans.get(tree).copied().unwrap_or_default();
                     Vec4::new(gain, class, 0.0, 0.0)
                 }),
             },
-            season: SeasonUniform::new(&species.phenology, summer),
+            season: SeasonUniform::new(&species.phenology, views.summer),
             wind_a: wind_a.clone(),
             wind_b: wind_b.clone(),
             near,

@@ -12,7 +12,7 @@
 @group(#{MATERIAL_BIND_GROUP}) @binding(106) var<storage, read> wind_b: array<vec4<f32>>;
 
 // Layout of a slot, in vec4: a header of HEADER rows, the direction map, the responses, the velocities.
-// See `slot_rows` in `sway/rows.rs`.
+// See `pack_slot` in `sway/rows.rs`.
 const HEADER: u32 = 4u;
 
 fn wind_row(slot: u32, index: u32) -> vec4<f32> {
