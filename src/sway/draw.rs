@@ -43,6 +43,8 @@ pub(crate) struct CardBehind;
 /// What a tree wears.
 #[derive(Component, Clone, Copy, Debug)]
 pub(super) struct Worn {
+    /// What it was dressed as.
+    pub model: AssetId<TreeModel>,
     pub levels: Levels,
     /// How many levels it has.
     pub count: u8,
@@ -81,7 +83,7 @@ impl TreesByLevel<'_, '_> {
 }
 
 /// Boxes that are fitted in a frame, at most: to do it for all trees takes milliseconds, and a wind grows over many frames.
-const BOXES_PER_FRAME: usize = 1024;
+const BOXES_PER_FRAME: usize = 512;
 
 /// Gives trees more room when a stronger wind comes, and takes back what they need no more.
 pub(super) fn fit_boxes(
@@ -163,12 +165,15 @@ pub(super) struct Fades {
 }
 
 impl Worn {
-    /// What a tree wears that is seen from where it stands for the first time.
-    pub fn new(variant: &VariantLook, tint: u8, sight: &Sight, at: &GlobalTransform, fades: Fades) -> Self {
-        let count = variant.levels.len() as u8;
-        let worn = Self { levels: Levels::default(), count, height_m: variant.height_m, tint };
+    pub fn new(variant: &VariantLook, grown: &Grown, tint: u8) -> Self {
+        let (count, height_m) = (variant.levels.len() as u8, variant.height_m);
+        Self { model: grown.model.id(), levels: Levels::default(), count, height_m, tint }
+    }
+
+    /// The same, as it is seen for the first time from where it stands.
+    pub fn as_seen(self, sight: &Sight, at: &GlobalTransform, fades: Fades) -> Self {
         let scale = at.affine().matrix3.y_axis.length();
-        Self { levels: worn.choose(sight, at.translation(), scale, fades, None), ..worn }
+        Self { levels: self.choose(sight, at.translation(), scale, fades, None), ..self }
     }
 
     /// The levels at a distance; a tree whose material cannot fade wears one at a time.

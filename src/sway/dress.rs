@@ -31,7 +31,7 @@ pub(super) fn dress_trees(
     mut dresser: Dresser,
     mut dressed: MessageReader<StageDressed>,
     bare: Query<Clothed, Without<Worn>>,
-    worn: Query<(Clothed, Option<&Children>), With<Worn>>,
+    worn: Query<(Clothed, &Worn, Option<&Children>)>,
     regrown: Query<Entity, (Changed<Grown>, With<Worn>)>,
 ) {
     // To be dressed from head to foot takes twice as long as to change.
@@ -42,15 +42,18 @@ pub(super) fn dress_trees(
         }
         left -= usize::from(dresser.dress(entity, tree, grown, card_behind));
     }
-    let renewed: Vec<StageDressed> = dressed.read().copied().collect();
     let mut due: Vec<Entity> = regrown.iter().collect();
-    if !renewed.is_empty() {
-        let is_due = |(entity, tree, grown, _): (Entity, &Tree, &Grown, bool)| {
-            !regrown.contains(entity) && dresser.is_of_any(&renewed, tree, grown)
+    let stages: Vec<StageDressed> = dressed.read().copied().collect();
+    if !stages.is_empty() {
+        // They have waited for these looks, or wear some that are gone.
+        let waits = |((_, tree, grown, _), worn, _): &((Entity, &Tree, &Grown, bool), &Worn, Option<&Children>)| {
+            worn.model != grown.model.id() || dresser.is_anew(&stages, tree, grown)
         };
-        due.extend(worn.iter().filter(|(tree, _)| is_due(*tree)).map(|((entity, ..), _)| entity));
+        due.extend(worn.iter().filter(waits).map(|((entity, ..), ..)| entity));
+        due.sort_unstable();
+        due.dedup();
     }
-    for ((entity, tree, grown, card_behind), children) in due.into_iter().filter_map(|entity| worn.get(entity).ok()) {
+    for ((entity, tree, grown, card_behind), _, children) in due.into_iter().filter_map(|tree| worn.get(tree).ok()) {
         if dresser.wardrobe.variant(tree.species.id(), grown.model.id()).is_some() {
             dresser.undress(entity, children);
             dresser.dress(entity, tree, grown, card_behind);
@@ -59,10 +62,11 @@ pub(super) fn dress_trees(
 }
 
 impl Dresser<'_, '_> {
-    fn is_of_any(&self, stages: &[StageDressed], tree: &Tree, grown: &Grown) -> bool {
+    fn is_anew(&self, stages: &[StageDressed], tree: &Tree, grown: &Grown) -> bool {
         let species = tree.species.id();
-        let look = self.wardrobe.variant(species, grown.model.id());
-        look.is_some_and(|look| stages.iter().any(|stage| (stage.species, stage.step) == (species, look.step)))
+        let mut anew = stages.iter().filter(|stage| stage.is_anew && stage.species == species).peekable();
+        let look = anew.peek().and_then(|_| self.wardrobe.variant(species, grown.model.id()));
+        look.is_some_and(|look| anew.any(|stage| stage.step == look.step))
     }
 
     fn undress(&mut self, tree: Entity, children: Option<&Children>) {
@@ -80,7 +84,7 @@ impl Dresser<'_, '_> {
         let standing = if path.sways { stand.admit(grown.model.id()) } else { None };
         let at = places.compute_global_transform(entity).unwrap_or_default();
         let fades = Fades { levels: standing.is_some(), into_card: card_behind };
-        let worn = Worn::new(variant, tree.tint_byte(grown.seed) as u8, sight, &at, fades);
+        let worn = Worn::new(variant, grown, tree.tint_byte(grown.seed) as u8).as_seen(sight, &at, fades);
         let dress = Dress { tree: entity, variant, worn, standing, card_behind, path: **path };
         match standing {
             Some(standing) => dress.put_on(None, (worn, standing), commands),

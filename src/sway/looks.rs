@@ -66,6 +66,8 @@ pub(super) struct StageDressed {
     pub species: AssetId<Species>,
     /// See [`VariantLook::step`].
     pub step: i32,
+    /// Whether there were others before, which are gone.
+    pub is_anew: bool,
 }
 
 struct Tailored {
@@ -178,8 +180,9 @@ pub(super) fn finish_tailoring(
         wardrobe.looks.insert(species, SpeciesLooks { generation, phenology, outfits, variants });
     }
     let Some(looks) = wardrobe.looks.get_mut(&species) else { return };
+    let is_anew = looks.variants.values().any(|variant| variant.step == step);
     atelier.sew(looks, step, &stage.models, cut.variants);
-    dressed.write(StageDressed { species, step });
+    dressed.write(StageDressed { species, step, is_anew });
 }
 
 impl Atelier<'_> {
