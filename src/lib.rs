@@ -36,6 +36,7 @@
 //! | [`forest`] | forests that grow from plans about the viewers, [`Forest`](forest::Forest) | scatter, cells, terrain, tree, lod, sway, wind |
 //! | [`cells`] | the forest's voxel grid: what is seen, at which level, what to plant, who stands where; no ECS | scatter, lod |
 
+mod retire;
 mod schedule;
 mod setting;
 #[cfg(feature = "render")]

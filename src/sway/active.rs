@@ -1,7 +1,10 @@
 //! The tables in force, built off the frame, and their fade from one wind to the next.
 
 use super::response::{SwaySettings, WindResponse};
-use crate::wind::{ActiveWind, CrossFade, FadeStep, Wind, WindClock, WindField};
+use crate::{
+    retire::retire,
+    wind::{ActiveWind, CrossFade, FadeStep, Wind, WindClock, WindField},
+};
 use bevy::{
     prelude::*,
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
@@ -105,7 +108,7 @@ pub(super) fn fade_tables(wind: Res<Wind>, time: Res<Time>, mut sway: ResMut<Act
         sway.building = None;
         let built = Arc::new(built);
         match &mut sway.responses {
-            Some(fade) => fade.succeed(built, wind.fade_s),
+            Some(fade) => retire(fade.succeed(built, wind.fade_s)),
             None => {
                 sway.responses = Some(CrossFade::new(built));
                 sway.generation += 1;
@@ -117,7 +120,8 @@ pub(super) fn fade_tables(wind: Res<Wind>, time: Res<Time>, mut sway: ResMut<Act
     match fade.advance(time.delta_secs()) {
         FadeStep::Began => sway.generation += 1,
         // The slot that has faded in keeps its tables: now it is the one that the next fade starts from.
-        FadeStep::Finished => {
+        FadeStep::Finished(gone) => {
+            retire(gone);
             sway.swapped = !sway.swapped;
             sway.generation += 1;
         }

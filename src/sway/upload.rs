@@ -13,7 +13,7 @@ use super::{
     table::Table,
     writes::BufferWrites,
 };
-use crate::{tree::Season, wind::WindClock};
+use crate::{retire::retire, tree::Season, wind::WindClock};
 use bevy::{asset::RenderAssetUsages, ecs::system::SystemParam, prelude::*, render::storage::ShaderBuffer};
 use bytemuck::Pod;
 use std::sync::Arc;
@@ -181,7 +181,7 @@ pub(super) fn upload_winds(sway: Res<ActiveSway>, path: Res<DrawPath>, mut warne
             warn!("windwood: the tables of this wind have {bytes} bytes, the device allows {limit}; trees stand still");
             *warned = true;
         }
-        uploads.shared.sent[slot] = Some(response.clone());
+        retire(uploads.shared.sent[slot].replace(response.clone()));
     }
 }
 

@@ -15,15 +15,15 @@ pub struct CrossFade<T> {
 
 /// What a step of the fade brought about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FadeStep {
+pub enum FadeStep<T> {
     /// Nothing runs.
     Rest,
     /// A new successor has begun to fade in; its weight is still 0.
     Began,
     /// A fade is on its way.
     Running,
-    /// The successor has taken over and is now the only one.
-    Finished,
+    /// The successor has taken over and is now the only one; this was before it.
+    Finished(T),
 }
 
 impl<T> CrossFade<T> {
@@ -33,22 +33,21 @@ impl<T> CrossFade<T> {
     }
 
     /// Hands over a successor that takes `duration_s` seconds to fade in (0, less or NaN: one step). It begins with the
-    /// next step that finds no fade running; of several, the last counts.
-    pub fn succeed(&mut self, next: T, duration_s: f32) {
-        self.waiting = Some((next, duration_s.max(0.0)));
+    /// next step that finds no fade running; of several, the last counts, and the one that waited before it is given back.
+    pub fn succeed(&mut self, next: T, duration_s: f32) -> Option<T> {
+        self.waiting.replace((next, duration_s.max(0.0))).map(|(before, _)| before)
     }
 
     /// Moves on by `delta_s` seconds.
-    pub fn advance(&mut self, delta_s: f32) -> FadeStep {
+    pub fn advance(&mut self, delta_s: f32) -> FadeStep<T> {
         if self.to.is_some() {
             self.elapsed_s += delta_s.max(0.0);
             if self.elapsed_s < self.duration_s {
                 return FadeStep::Running;
             }
-            if let Some(to) = self.to.take() {
-                self.from = to;
-            }
-            return FadeStep::Finished;
+        }
+        if let Some(to) = self.to.take() {
+            return FadeStep::Finished(std::mem::replace(&mut self.from, to));
         }
         match self.waiting.take() {
             Some((next, duration_s)) => {
@@ -103,7 +102,7 @@ mod tests {
             assert!(fade.weight() > last && fade.weight() < 1.0);
             last = fade.weight();
         }
-        assert_eq!(fade.advance(0.2), FadeStep::Finished);
+        assert_eq!(fade.advance(0.2), FadeStep::Finished('a'));
         assert_eq!((*fade.from(), fade.to(), fade.weight()), ('b', None, 0.0));
     }
 
@@ -112,11 +111,11 @@ mod tests {
         let mut fade = CrossFade::new('a');
         fade.succeed('b', 1.0);
         fade.advance(0.0);
-        fade.succeed('c', 1.0);
-        fade.succeed('d', 1.0);
+        assert_eq!(fade.succeed('c', 1.0), None);
+        assert_eq!(fade.succeed('d', 1.0), Some('c'));
         assert_eq!(*fade.newest(), 'd');
         assert_eq!((*fade.from(), fade.to().copied()), ('a', Some('b')));
-        assert_eq!(fade.advance(2.0), FadeStep::Finished);
+        assert_eq!(fade.advance(2.0), FadeStep::Finished('a'));
         assert_eq!(fade.advance(0.0), FadeStep::Began);
         assert_eq!((*fade.from(), fade.to().copied()), ('b', Some('d')));
     }
@@ -126,7 +125,7 @@ mod tests {
         let mut fade = CrossFade::new(1);
         fade.succeed(2, 0.0);
         assert_eq!(fade.advance(0.0), FadeStep::Began);
-        assert_eq!(fade.advance(0.0), FadeStep::Finished);
+        assert_eq!(fade.advance(0.0), FadeStep::Finished(1));
         assert_eq!(*fade.from(), 2);
     }
 }

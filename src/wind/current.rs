@@ -4,6 +4,7 @@ use super::{
     FieldSettings, WindField,
     cross_fade::{CrossFade, FadeStep},
 };
+use crate::retire::retire;
 use bevy::{
     prelude::*,
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
@@ -140,7 +141,7 @@ pub(super) fn receive_field(wind: Res<Wind>, mut active: ResMut<ActiveWind>) {
         Ok(field) => {
             let field = Arc::new(field);
             match &mut active.fields {
-                Some(fields) => fields.succeed(field, wind.fade_s),
+                Some(fields) => retire(fields.succeed(field, wind.fade_s)),
                 None => active.fields = Some(CrossFade::new(field)),
             }
         }
@@ -150,7 +151,8 @@ pub(super) fn receive_field(wind: Res<Wind>, mut active: ResMut<ActiveWind>) {
 
 pub(super) fn fade_field(time: Res<Time>, mut active: ResMut<ActiveWind>) {
     let Some(fields) = &mut active.fields else { return };
-    if fields.advance(time.delta_secs()) == FadeStep::Finished {
+    if let FadeStep::Finished(gone) = fields.advance(time.delta_secs()) {
+        retire(gone);
         debug!("wind: the new field has taken over");
     }
 }
