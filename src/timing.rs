@@ -6,7 +6,7 @@ use bevy::{
 };
 use std::{
     sync::{
-        Arc,
+        Arc, OnceLock,
         atomic::{AtomicU64, Ordering},
     },
     time::{Duration, Instant},
@@ -15,12 +15,19 @@ use std::{
 /// How long each of our systems ran in this frame, or in the last where it has not run yet. What it costs is two looks at
 /// the clock a system.
 #[derive(Resource, Default)]
-pub struct SystemTimes(Vec<(&'static str, Arc<AtomicU64>)>);
+pub struct SystemTimes {
+    systems: Vec<(&'static str, Arc<AtomicU64>)>,
+    clock: Arc<OnceLock<Clock>>,
+}
+
+type Clock = fn() -> Duration;
 
 impl SystemTimes {
     /// The name of every system that is watched, and its time.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, Duration)> + '_ {
-        self.0.iter().map(|(name, nanoseconds)| (*name, Duration::from_nanos(nanoseconds.load(Ordering::Relaxed))))
+        self.systems
+            .iter()
+            .map(|(name, nanoseconds)| (*name, Duration::from_nanos(nanoseconds.load(Ordering::Relaxed))))
     }
 
     /// All together, as if none ran beside another.
@@ -28,11 +35,21 @@ impl SystemTimes {
     pub fn total(&self) -> Duration {
         self.iter().map(|(_, time)| time).sum()
     }
+
+    /// Has times taken from another clock from now on: say, one of the time that the processor has spent on a thread, which
+    /// stands still while a system waits for a core. A system runs on one thread from beginning to end. Of several clocks the
+    /// first counts.
+    pub fn use_clock(&self, clock: fn() -> Duration) {
+        self.clock.get_or_init(|| clock);
+    }
 }
 
 /// Writes how long a system runs.
 #[derive(Clone)]
-pub(crate) struct Timed(Arc<AtomicU64>);
+pub(crate) struct Timed {
+    nanoseconds: Arc<AtomicU64>,
+    clock: Arc<OnceLock<Clock>>,
+}
 
 impl<S: System<In = (), Out = ()>> Adapt<S> for Timed {
     type In = ();
@@ -43,10 +60,12 @@ impl<S: System<In = (), Out = ()>> Adapt<S> for Timed {
         (): (),
         run: impl FnOnce(SystemIn<'_, S>) -> Result<(), RunSystemError>,
     ) -> Result<(), RunSystemError> {
-        let begun = Instant::now();
+        let (begun, clock) = (Instant::now(), self.clock.get());
+        let begun_by_clock = clock.map(|clock| clock());
         let result = run(());
-        let nanoseconds = u64::try_from(begun.elapsed().as_nanos()).unwrap_or(u64::MAX);
-        self.0.store(nanoseconds, Ordering::Relaxed);
+        let by_clock = clock.zip(begun_by_clock).map(|(clock, begun)| clock().saturating_sub(begun));
+        let time = by_clock.unwrap_or_else(|| begun.elapsed());
+        self.nanoseconds.store(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX), Ordering::Relaxed);
         result
     }
 }
@@ -61,8 +80,10 @@ pub(crate) fn timed_as<Marker, S: IntoSystem<(), (), Marker>>(
         app.init_resource::<SystemTimes>().add_systems(First, forget_times);
     }
     let nanoseconds = Arc::new(AtomicU64::new(0));
-    app.world_mut().resource_mut::<SystemTimes>().0.push((name, nanoseconds.clone()));
-    IntoAdapterSystem::new(Timed(nanoseconds), system)
+    let mut times = app.world_mut().resource_mut::<SystemTimes>();
+    times.systems.push((name, nanoseconds.clone()));
+    let clock = times.clock.clone();
+    IntoAdapterSystem::new(Timed { nanoseconds, clock }, system)
 }
 
 /// Systems that are watched under their own names, as [`timed_as`] does.
@@ -75,7 +96,7 @@ pub(crate) use timed;
 
 /// A system that does not run takes no time.
 fn forget_times(times: Res<SystemTimes>) {
-    times.0.iter().for_each(|(_, nanoseconds)| nanoseconds.store(0, Ordering::Relaxed));
+    times.systems.iter().for_each(|(_, nanoseconds)| nanoseconds.store(0, Ordering::Relaxed));
 }
 
 #[cfg(test)]
@@ -93,5 +114,19 @@ mod tests {
         assert!(times[0].0 == "slow" && times[0].1 >= Duration::from_millis(3), "{times:?}");
         assert_eq!(times[1], ("never", Duration::ZERO));
         assert_eq!(app.world().resource::<SystemTimes>().total(), times[0].1);
+    }
+
+    #[test]
+    fn times_are_those_of_the_clock_that_is_read() {
+        static HOURS: AtomicU64 = AtomicU64::new(0);
+        let mut app = App::new();
+        let system = timed_as(&mut app, "two hours", || {
+            HOURS.fetch_add(2, Ordering::Relaxed);
+        });
+        app.add_systems(Update, system);
+        let clock = || Duration::from_secs(3600 * HOURS.load(Ordering::Relaxed));
+        app.world().resource::<SystemTimes>().use_clock(clock);
+        app.update();
+        assert_eq!(app.world().resource::<SystemTimes>().total(), Duration::from_secs(7200));
     }
 }

@@ -51,7 +51,9 @@ pub fn run(report: &mut Report) -> Result<(), String> {
         ours_ms.push(times.total().as_secs_f64() * 1e3);
         dearest.note(times);
     }
-    let slowest_ms = Acts { app: &mut app, flight: &mut flight, pass: capture::step }.slowest_ms();
+    let mut acts = Acts { app: &mut app, flight: &mut flight, pass: capture::step };
+    let slowest_ms = acts.slowest_ms();
+    let slowest_leap_ms = acts.slowest_leap_by_processor_ms();
     println!("with a renderer");
     dearest.print();
     let [median_ms, p99_ms] = median_and_p99(&ours_ms);
@@ -63,6 +65,14 @@ pub fn run(report: &mut Report) -> Result<(), String> {
         ["drawn_wind_ms_1e6", "drawn_wind_ms_worst_1e6"],
     ];
     leaps::tell(report, keys, slowest_ms);
+    if let Some([median_ms, worst_ms]) = slowest_leap_ms {
+        report.tell(
+            "drawn_leap_work_ms_1e6",
+            median_ms,
+            "leaps once more: what the processor has worked, median of five",
+        );
+        report.at_most("drawn_leap_work_ms_worst_1e6", worst_ms, 2.0, "the worst of the five");
+    }
     report.tell("drawn_all_s_1e6", all_s, "until every tree within 10 km stands or has its card");
     let world = app.world_mut();
     let blocks = world.query::<&FarBlocks>().single(world).map_err(|error| error.to_string())?;

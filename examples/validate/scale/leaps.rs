@@ -1,10 +1,14 @@
 //! What is worse for a forest than a viewer who flies: one who whirls about on the spot, or leaps across the woods, and
 //! another wind.
+//!
+//! A system that sends a task away may lose its core to it, and on a machine with two of them often does: with a renderer
+//! leaps are made once more by a clock that stands still meanwhile.
 
 use super::{Flight, SIDE_M, dearest::median_and_p99};
 use crate::report::Report;
 use bevy::prelude::*;
 use bevy_windwood::{SystemTimes, prelude::*};
+use std::time::Duration;
 
 /// How often each is done; the slowest frame of each time counts. The median of these leaves out what else the machine does
 /// now and then, and the worst is told beside it.
@@ -38,6 +42,14 @@ impl<F: FnMut(&mut App)> Acts<'_, F> {
     fn slowest_of(&mut self, act: fn(&mut Self, usize) -> f64) -> Slowest {
         let of_each: Vec<f64> = (0..TIMES).map(|time| act(self, time)).collect();
         [median_and_p99(&of_each)[0], of_each.iter().copied().fold(0.0, f64::max)]
+    }
+
+    /// The slowest frames after leaps by the time that the processor spends on our systems; none where the system has no such
+    /// clock. From then on all times are by it.
+    pub fn slowest_leap_by_processor_ms(&mut self) -> Option<Slowest> {
+        let clock = processor_clock()?;
+        self.app.world().resource::<SystemTimes>().use_clock(clock);
+        Some(self.slowest_of(Self::leap))
     }
 
     /// What our systems take in a frame, ms.
@@ -89,6 +101,19 @@ pub fn tell(report: &mut Report, keys: [[&'static str; 2]; 3], slowest_ms: [Slow
         report.at_most(median_key, median_ms, 2.0, note);
         report.tell(worst_key, worst_ms, "the worst of the five");
     }
+}
+
+/// Tells what the time is that the processor has spent on a thread.
+#[cfg(unix)]
+#[expect(clippy::unnecessary_wraps, reason = "elsewhere there is none")]
+fn processor_clock() -> Option<fn() -> Duration> {
+    use rustix::time::{ClockId, clock_gettime};
+    Some(|| Duration::try_from(clock_gettime(ClockId::ThreadCPUTime)).unwrap_or_default())
+}
+
+#[cfg(not(unix))]
+fn processor_clock() -> Option<fn() -> Duration> {
+    None
 }
 
 /// Spots that are spread evenly over the inner woods (the R2 sequence of Roberts 2018), m.
