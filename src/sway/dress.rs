@@ -53,9 +53,9 @@ pub(super) fn dress_trees(
         due.sort_unstable();
         due.dedup();
     }
-    for ((entity, tree, grown, card_behind), _, children) in due.into_iter().filter_map(|tree| worn.get(tree).ok()) {
+    for ((entity, tree, grown, card_behind), worn, children) in due.into_iter().filter_map(|tree| worn.get(tree).ok()) {
         if dresser.wardrobe.variant(tree.species.id(), grown.model.id()).is_some() {
-            dresser.undress(entity, children);
+            dresser.undress(entity, worn, children);
             dresser.dress(entity, tree, grown, card_behind);
         }
     }
@@ -69,12 +69,16 @@ impl Dresser<'_, '_> {
         look.is_some_and(|look| anew.any(|stage| stage.step == look.step))
     }
 
-    fn undress(&mut self, tree: Entity, children: Option<&Children>) {
+    fn undress(&mut self, tree: Entity, worn: &Worn, children: Option<&Children>) {
         for child in children.into_iter().flatten().filter(|child| self.draws.contains(**child)) {
             self.commands.entity(*child).despawn();
         }
         // The row is given back when the component goes.
-        self.commands.entity(tree).remove::<Standing>();
+        let mut tree = self.commands.entity(tree);
+        tree.remove::<Standing>();
+        if worn.levels.gone {
+            tree.insert(Visibility::Inherited);
+        }
     }
 
     /// Dresses a tree that wears nothing, if there is something for it, and says whether it did.
@@ -186,6 +190,43 @@ impl Dress<'_> {
             entity.insert((draw, CulledOnGpu));
         } else {
             entity.insert(draw);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::ecs::system::RunSystemOnce;
+
+    fn undress_all(mut dresser: Dresser, trees: Query<(Entity, &Worn, Option<&Children>)>) {
+        trees.iter().for_each(|(tree, worn, children)| dresser.undress(tree, worn, children));
+    }
+
+    #[test]
+    fn who_is_undressed_keeps_nothing_but_what_is_its_own() {
+        let mut world = World::new();
+        world.init_resource::<Wardrobe>();
+        world.init_resource::<Sight>();
+        world.init_resource::<Stand>();
+        let (pose_limit, table_limit_bytes) = (0, 0);
+        world.insert_resource(DrawPath { sways: true, culls_on_gpu: true, pose_limit, table_limit_bytes });
+        // One whose card stood for it, and one that its owner has hidden.
+        let trees = [true, false].map(|gone| {
+            let levels = Levels { gone, ..Levels::default() };
+            let worn = Worn { model: AssetId::default(), levels, count: 1, height_m: 9.0, tint: 0 };
+            let tree = world.spawn((worn, Standing { row: 0 }, Visibility::Hidden, children![Foliage, Coming]));
+            let tree = tree.id();
+            world.spawn((Name::new("nest"), ChildOf(tree)));
+            tree
+        });
+        world.run_system_once(undress_all).expect("it runs");
+        let seen = trees.map(|tree| world.get::<Visibility>(tree).copied());
+        assert_eq!(seen, [Some(Visibility::Inherited), Some(Visibility::Hidden)]);
+        for tree in trees {
+            assert!(world.get::<Standing>(tree).is_none());
+            let children = world.get::<Children>(tree).expect("the nest is left");
+            assert!(children.len() == 1 && world.get::<Name>(children[0]).is_some());
         }
     }
 }
