@@ -115,9 +115,10 @@ pub(super) struct Uploads<'w> {
 }
 
 impl Uploads<'_> {
-    /// Sends the rows of a table that were written. One that has outgrown its buffer gets another.
-    fn send<T: Pod + Default>(&mut self, handle: &Handle<ShaderBuffer>, table: &mut Table<T>) {
-        if table.make_room().is_some() {
+    /// Sends the rows of a table that were written, and says whether it has outgrown its buffer and got another.
+    fn send<T: Pod + Default>(&mut self, handle: &Handle<ShaderBuffer>, table: &mut Table<T>) -> bool {
+        let is_renewed = table.make_room().is_some();
+        if is_renewed {
             self.renew(handle, table.bytes());
         }
         let size = table.bytes() as u64;
@@ -125,22 +126,25 @@ impl Uploads<'_> {
             let offset = u64::from(first) * size_of::<T>() as u64;
             self.writes.write(handle, size, offset, bytemuck::cast_slice(rows));
         });
+        is_renewed
     }
 
-    /// Another buffer in place of one, to which materials must be bound anew.
-    fn renew(&mut self, handle: &Handle<ShaderBuffer>, bytes: usize) {
-        if let Some(mut buffer) = self.buffers.get_mut(handle) {
-            *buffer = ShaderBuffer::with_size(bytes, RenderAssetUsages::RENDER_WORLD);
-            self.shared.stale_materials = 2;
-        }
-    }
-
-    /// Makes room for poses: half as many again as are needed, so that a growing stand seldom needs it.
-    fn make_room(&mut self, poses: u32) {
-        if poses > self.shared.pose_capacity {
+    /// Makes room for poses: half as many again as are needed, so that a growing stand seldom needs it. Says whether there was
+    /// too little.
+    fn make_room(&mut self, poses: u32) -> bool {
+        let is_short = poses > self.shared.pose_capacity;
+        if is_short {
             self.shared.pose_capacity = poses + poses / 2;
             let handle = self.shared.poses.clone();
             self.renew(&handle, 2 * self.shared.pose_capacity as usize * POSE_BYTES);
+        }
+        is_short
+    }
+
+    /// Another buffer in place of one.
+    fn renew(&mut self, handle: &Handle<ShaderBuffer>, bytes: usize) {
+        if let Some(mut buffer) = self.buffers.get_mut(handle) {
+            *buffer = ShaderBuffer::with_size(bytes, RenderAssetUsages::RENDER_WORLD);
         }
     }
 
@@ -200,10 +204,16 @@ pub(super) fn upload_frame(
     stand.tidy();
     let StandBuffers { trees, beams, chunks, .. } = &*uploads.shared;
     let [trees, beams, chunks] = [trees, beams, chunks].map(Handle::clone);
-    uploads.send(&trees, &mut stand.trees);
-    uploads.send(&beams, &mut stand.beams);
+    let renewed = [
+        uploads.send(&trees, &mut stand.trees),
+        uploads.send(&beams, &mut stand.beams),
+        uploads.make_room(stand.pose_count()),
+    ];
+    if renewed.contains(&true) {
+        uploads.shared.stale_materials = 2;
+    }
+    // No material is bound to these.
     uploads.send(&chunks, &mut stand.chunks.table);
-    uploads.make_room(stand.pose_count());
     job.chunks = stand.chunks.table.len();
     uploads.rebind();
 
