@@ -3,10 +3,11 @@
 //! - `response` turns a wind field into tables, once per wind, off the frame.
 //! - `active` fades from the tables of one wind to those of the next.
 //! - `articulated` poses the trees that ask for it on the processor.
-//! - With the feature `render`, `looks` has the meshes (`cut`) and materials (`outfits`) of species made in the background,
-//!   `draw` puts them on trees, as many levels of detail as `detail` says, and `stand` gives trees rows in shared tables;
-//!   each frame `upload` writes the clock, `compute` poses all beams on the graphics processor (`shaders/pose.wgsl`), and
-//!   `shaders/sway.wgsl` carries every vertex: no work per tree and frame on the processor.
+//! - With the feature `render`, `looks` has the meshes (`cut`), images (`painted`) and materials (`outfits`) of species made in
+//!   the background, `dress` puts them on trees, as many levels of detail as `detail` says, and `stand` gives trees rows in
+//!   shared tables; each frame `upload` sends the clock and the rows that changed (`table`, `writes`), `compute` poses all
+//!   beams on the graphics processor (`shaders/pose.wgsl`), and `shaders/sway.wgsl` carries every vertex: no work per tree and
+//!   frame on the processor.
 
 mod active;
 mod articulated;

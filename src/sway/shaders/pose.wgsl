@@ -12,7 +12,8 @@
 @group(#{MATERIAL_BIND_GROUP}) @binding(100) var<storage, read_write> poses: array<BeamPose>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(101) var<storage, read> beams: array<BeamRow>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(102) var<storage, read> trees: array<TreeRow>;
-// What each workgroup poses: a tree's row in the low half, which of its chunks of beams in the high half.
+// What each workgroup poses: a tree's row in the low half, which of its chunks of beams in the high half. A place that is
+// nobody's holds a chunk beyond the beams of any tree.
 @group(#{MATERIAL_BIND_GROUP}) @binding(104) var<storage, read> chunks: array<u32>;
 
 // Threads of a workgroup, and beams of a chunk; `CHUNK` in `sway/rows.rs`.
