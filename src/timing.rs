@@ -6,7 +6,7 @@ use bevy::{
 };
 use std::{
     sync::{
-        Arc, OnceLock,
+        Arc, LazyLock, OnceLock,
         atomic::{AtomicU64, Ordering},
     },
     time::{Duration, Instant},
@@ -21,6 +21,12 @@ pub struct SystemTimes {
 }
 
 type Clock = fn() -> Duration;
+
+/// The clock on the wall: since it was first looked at.
+fn wall_time() -> Duration {
+    static BEGINNING: LazyLock<Instant> = LazyLock::new(Instant::now);
+    BEGINNING.elapsed()
+}
 
 impl SystemTimes {
     /// The name of every system that is watched, and its time.
@@ -60,11 +66,10 @@ impl<S: System<In = (), Out = ()>> Adapt<S> for Timed {
         (): (),
         run: impl FnOnce(SystemIn<'_, S>) -> Result<(), RunSystemError>,
     ) -> Result<(), RunSystemError> {
-        let (begun, clock) = (Instant::now(), self.clock.get());
-        let begun_by_clock = clock.map(|clock| clock());
+        let clock = self.clock.get().copied().unwrap_or(wall_time);
+        let begun = clock();
         let result = run(());
-        let by_clock = clock.zip(begun_by_clock).map(|(clock, begun)| clock().saturating_sub(begun));
-        let time = by_clock.unwrap_or_else(|| begun.elapsed());
+        let time = clock().saturating_sub(begun);
         self.nanoseconds.store(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX), Ordering::Relaxed);
         result
     }

@@ -108,7 +108,7 @@ pub(super) fn fade_tables(wind: Res<Wind>, time: Res<Time>, mut sway: ResMut<Act
         sway.building = None;
         let built = Arc::new(built);
         match &mut sway.responses {
-            Some(fade) => retire(fade.succeed(built, wind.fade_s)),
+            Some(fade) => fade.succeed(built, wind.fade_s).into_iter().for_each(retire),
             None => {
                 sway.responses = Some(CrossFade::new(built));
                 sway.generation += 1;

@@ -57,6 +57,13 @@ mod tests {
     use crate::tree::Species;
 
     #[test]
+    fn without_a_wind_that_is_known_there_is_room_for_any() {
+        for unknown in [None, Some(f32::NAN)] {
+            assert_eq!(Exposure::new(unknown, Season::SUMMER).pressure, PressureStep::LIMIT);
+        }
+    }
+
+    #[test]
     fn leaves_that_drift_need_room_aside() {
         let species = Species::default();
         let model = TreeModel::bake(&species, 40.0, 1);

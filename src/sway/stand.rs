@@ -9,7 +9,7 @@ use super::{
     draw::{DrawPath, Worn},
     ranges::Ranges,
     rows::{BeamRow, POSE_BYTES, TreeRow},
-    table::Table,
+    table::{Table, with_reserve},
 };
 use crate::tree::{Tree, TreeModel};
 use bevy::{platform::collections::HashMap, prelude::*};
@@ -214,7 +214,7 @@ impl Stand {
 
     /// What its tables have on the graphics processor, bytes: both halves of the poses, with their reserve.
     pub fn bytes(&self) -> usize {
-        let poses = 2 * (self.pose_end + self.pose_end / 2) as usize * POSE_BYTES;
+        let poses = 2 * with_reserve(self.pose_end) as usize * POSE_BYTES;
         self.trees.bytes() + self.beams.bytes() + self.chunks.table.bytes() + poses
     }
 

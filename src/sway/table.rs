@@ -6,6 +6,11 @@ const GAP: u32 = 16;
 /// Rows for which there is room at first.
 const FIRST_ROOM: u32 = 256;
 
+/// For how many there is to be room: half as many again as are needed, so that what grows seldom needs more.
+pub(super) fn with_reserve(count: u32) -> u32 {
+    count + count / 2
+}
+
 /// Rows, and which of them were written since they were last sent.
 pub(super) struct Table<T> {
     rows: Vec<T>,
@@ -77,17 +82,17 @@ impl<T: Copy + Default> Table<T> {
         }
     }
 
-    /// Makes room on the graphics processor for all rows and half as many again, so that a growing table seldom needs it.
-    /// Says for how many, if there was too little: then everything has to be sent anew.
-    pub fn make_room(&mut self) -> Option<u32> {
+    /// Makes room on the graphics processor for all rows, with a reserve, and says whether there was too little: then
+    /// everything has to be sent anew.
+    pub fn make_room(&mut self) -> bool {
         if self.len() <= self.room {
-            return None;
+            return false;
         }
-        self.room = (self.len() + self.len() / 2).max(FIRST_ROOM);
+        self.room = with_reserve(self.len()).max(FIRST_ROOM);
         self.written.clear();
         self.written.extend(0..self.rows.len() as u32);
         self.is_written.fill(true);
-        Some(self.room)
+        true
     }
 
     /// Sends what was written: rows one after another, and the number of the first of them.
@@ -124,8 +129,8 @@ mod tests {
                     *row = round;
                 }
             }
-            if let Some(room) = table.make_room() {
-                copy = vec![u32::MAX; room as usize];
+            if table.make_room() {
+                copy = vec![u32::MAX; table.room as usize];
             }
             table.send(|first, rows| copy[first as usize..][..rows.len()].copy_from_slice(rows));
             assert_eq!(copy[..table.rows().len()], *table.rows(), "round {round}");

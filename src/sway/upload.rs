@@ -10,7 +10,7 @@ use super::{
     response::WindResponse,
     rows::{FrameRow, POSE_BYTES},
     stand::Stand,
-    table::Table,
+    table::{Table, with_reserve},
     writes::BufferWrites,
 };
 use crate::{retire::retire, tree::Season, wind::WindClock};
@@ -117,7 +117,7 @@ pub(super) struct Uploads<'w> {
 impl Uploads<'_> {
     /// Sends the rows of a table that were written, and says whether it has outgrown its buffer and got another.
     fn send<T: Pod + Default>(&mut self, handle: &Handle<ShaderBuffer>, table: &mut Table<T>) -> bool {
-        let is_renewed = table.make_room().is_some();
+        let is_renewed = table.make_room();
         if is_renewed {
             self.renew(handle, table.bytes());
         }
@@ -129,12 +129,11 @@ impl Uploads<'_> {
         is_renewed
     }
 
-    /// Makes room for poses: half as many again as are needed, so that a growing stand seldom needs it. Says whether there was
-    /// too little.
+    /// Makes room for poses, with a reserve, and says whether there was too little.
     fn make_room(&mut self, poses: u32) -> bool {
         let is_short = poses > self.shared.pose_capacity;
         if is_short {
-            self.shared.pose_capacity = poses + poses / 2;
+            self.shared.pose_capacity = with_reserve(poses);
             let handle = self.shared.poses.clone();
             self.renew(&handle, 2 * self.shared.pose_capacity as usize * POSE_BYTES);
         }
@@ -185,7 +184,7 @@ pub(super) fn upload_winds(sway: Res<ActiveSway>, path: Res<DrawPath>, mut warne
             warn!("windwood: the tables of this wind have {bytes} bytes, the device allows {limit}; trees stand still");
             *warned = true;
         }
-        retire(uploads.shared.sent[slot].replace(response.clone()));
+        uploads.shared.sent[slot].replace(response.clone()).into_iter().for_each(retire);
     }
 }
 

@@ -141,7 +141,7 @@ pub(super) fn receive_field(wind: Res<Wind>, mut active: ResMut<ActiveWind>) {
         Ok(field) => {
             let field = Arc::new(field);
             match &mut active.fields {
-                Some(fields) => retire(fields.succeed(field, wind.fade_s)),
+                Some(fields) => fields.succeed(field, wind.fade_s).into_iter().for_each(retire),
                 None => active.fields = Some(CrossFade::new(field)),
             }
         }

@@ -47,7 +47,7 @@ impl<F: FnMut(&mut App)> Acts<'_, F> {
     /// The slowest frames after leaps by the time that the processor spends on our systems; none where the system has no such
     /// clock. From then on all times are by it.
     pub fn slowest_leap_by_processor_ms(&mut self) -> Option<Slowest> {
-        let clock = processor_clock()?;
+        let clock = PROCESSOR_CLOCK?;
         self.app.world().resource::<SystemTimes>().use_clock(clock);
         Some(self.slowest_of(Self::leap))
     }
@@ -103,18 +103,14 @@ pub fn tell(report: &mut Report, keys: [[&'static str; 2]; 3], slowest_ms: [Slow
     }
 }
 
-/// Tells what the time is that the processor has spent on a thread.
+/// Tells what the time is that the processor has spent on a thread, where there is such a clock.
 #[cfg(unix)]
-#[expect(clippy::unnecessary_wraps, reason = "elsewhere there is none")]
-fn processor_clock() -> Option<fn() -> Duration> {
+const PROCESSOR_CLOCK: Option<fn() -> Duration> = Some(|| {
     use rustix::time::{ClockId, clock_gettime};
-    Some(|| Duration::try_from(clock_gettime(ClockId::ThreadCPUTime)).unwrap_or_default())
-}
-
+    Duration::try_from(clock_gettime(ClockId::ThreadCPUTime)).unwrap_or_default()
+});
 #[cfg(not(unix))]
-fn processor_clock() -> Option<fn() -> Duration> {
-    None
-}
+const PROCESSOR_CLOCK: Option<fn() -> Duration> = None;
 
 /// Spots that are spread evenly over the inner woods (the R2 sequence of Roberts 2018), m.
 fn spot_m(time: usize, step: f32) -> f32 {
