@@ -56,12 +56,13 @@ fn run(app: &mut App, options: &Options) -> Result<(), String> {
         let time_s = options.start + f64::from(frame) * options.interval;
         *app.world_mut().resource_mut::<WindClock>() = WindClock { time_s, previous_s: time_s };
         let picture = capture::capture(app, &target, options.size)?;
+        if options.strip {
+            pictures.push(picture);
+            continue;
+        }
         let path = options.out.join(format!("{}_{frame:03}.png", name(options)));
         capture::save(&picture, &path)?;
         println!("{} after {:.1} s", path.display(), begun.elapsed().as_secs_f32());
-        if options.strip {
-            pictures.push(picture);
-        }
     }
     if options.strip {
         capture::save(&strip(&pictures), &options.out.join("strip.png"))?;

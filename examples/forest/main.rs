@@ -54,6 +54,7 @@ fn main() -> ExitCode {
             roughness_m: 0.3,
             ..default()
         })
+        .insert_resource(Season { year: options.year })
         .insert_resource(scene::Setting { options: options.clone(), ground })
         .add_systems(Startup, scene::build);
     if headless {

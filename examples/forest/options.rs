@@ -27,6 +27,9 @@ pub struct Options {
     /// Mean wind speed at 10 m above ground, m/s.
     #[arg(long, default_value_t = 10.0, value_parser = wind_speed)]
     pub wind: f32,
+    /// The time of the year: 0 midwinter, 0.34 spring, 0.55 summer, 0.81 autumn.
+    #[arg(long, default_value_t = 0.55, value_parser = year)]
+    pub year: f32,
     /// Where to look from.
     #[arg(long, value_enum, default_value_t = View::Hillside)]
     pub view: View,
@@ -51,7 +54,7 @@ pub struct Options {
     /// Folder for the pictures.
     #[arg(long, default_value = "out")]
     pub out: PathBuf,
-    /// Also writes the pictures side by side, and what moved between the first and the last.
+    /// Writes the pictures side by side, and what moved between the first and the last, instead of each on its own.
     #[arg(long)]
     pub strip: bool,
     /// A 16-bit grey PNG of elevations in metres, first row northernmost.
@@ -71,6 +74,10 @@ pub enum View {
     Edge,
     /// From above.
     Aerial,
+}
+
+fn year(text: &str) -> Result<f32, String> {
+    in_range(text, 0.0, 1.0, "of the year")
 }
 
 fn cell_size(text: &str) -> Result<f32, String> {

@@ -72,6 +72,9 @@ struct Options {
     /// `levels`: this species alone.
     #[arg(long)]
     species: Option<String>,
+    /// `levels`: the time of the year, 0 to 1: midwinter is 0.
+    #[arg(long, default_value_t = 0.55)]
+    year: f32,
     /// Folder for charts and pictures.
     #[arg(long, default_value = "out")]
     out: PathBuf,
@@ -94,7 +97,7 @@ fn main() -> ExitCode {
         Topic::Trees => trees::run(),
         Topic::Figure9 => figure9::run(options.frames, options.trees, &options.out.join("figure9.png")),
         Topic::Grid => grid::run(options.frames, options.trees, &options.out),
-        Topic::Levels => levels::run(&options.out.join("levels.png"), options.species.as_deref()),
+        Topic::Levels => levels::run(&options.out.join("levels.png"), options.species.as_deref(), options.year),
     };
     report.print();
     if let Some(path) = options.json {

@@ -38,8 +38,9 @@ impl<'a> Projection<'a> {
         Self { scene, rays, corners: vec![Vec3::ZERO; scene.corners.len()], nearest: vec![NOTHING; rays[0] * rays[1]] }
     }
 
-    /// Looks at the tree along `basis.forward`, at a box about `centre` whose half sides, m, lie along the basis.
-    pub(super) fn look(&mut self, basis: &ViewBasis, centre: Vec3, half_m: Vec3) {
+    /// Looks at what is in sight of the tree along `basis.forward`, at a box about `centre` whose half sides, m, lie along
+    /// the basis.
+    pub(super) fn look(&mut self, basis: &ViewBasis, centre: Vec3, half_m: Vec3, sight: Sight) {
         let [across, down] = self.rays.map(|rays| 0.5 * rays as f32);
         let middle = Vec3::new(across, down, 0.5);
         let (right, down) = (basis.right * (across / half_m.x), basis.up * (-down / half_m.y));
@@ -49,13 +50,13 @@ impl<'a> Projection<'a> {
             *projected = Vec3::new(from.dot(right), from.dot(down), from.dot(forward)) + middle;
         }
         self.nearest.fill(NOTHING);
-        for triangle in 0..self.scene.triangles().len() {
-            self.cover(triangle, basis.forward);
+        for triangle in 0..self.scene.triangles_in(sight) {
+            self.cover(triangle, basis.forward, sight);
         }
     }
 
     /// Finds the rays that a triangle stops.
-    fn cover(&mut self, triangle: usize, forward: Vec3) {
+    fn cover(&mut self, triangle: usize, forward: Vec3, sight: Sight) {
         let [a, b, c] = self.scene.triangles()[triangle].map(|corner| self.corners[corner as usize]);
         let low = a.min(b).min(c);
         let high = a.max(b).max(c);
@@ -72,7 +73,7 @@ impl<'a> Projection<'a> {
             return;
         }
         let (u_step, v_step) = (Vec2::new(ac.y, -ac.x) / area, Vec2::new(-ab.y, ab.x) / area);
-        let gate = self.scene.gate(triangle, Sight::Tree);
+        let gate = self.scene.gate(triangle, sight);
         let sides = [u_step.x, v_step.x, -u_step.x - v_step.x];
         let (to_b, to_c) = (b.z - a.z, c.z - a.z);
         for y in rows {

@@ -40,6 +40,8 @@ pub enum Sight {
     Tree,
     /// All but the stems: leaves and branches.
     Crown,
+    /// Stems and branches: the tree in winter.
+    Wood,
 }
 
 /// Where a ray hits the tree.
@@ -78,6 +80,7 @@ struct Fabric {
     foliage: Paint,
     /// Whether leaves grow transparent towards their outline: Gardner's ellipsoids.
     is_billow: bool,
+    sheds_leaves: bool,
 }
 
 /// A vertex of either mesh.
@@ -109,6 +112,7 @@ impl Scene {
             bark: Paint::new(&textures.bark.base_colour, None, BARK_MIP),
             foliage: Paint::new(&textures.foliage, textures.foliage_normal.as_ref(), FOLIAGE_MIP),
             is_billow: matches!(species.growth, Growth::Gardner(_)),
+            sheds_leaves: !species.phenology.evergreen,
         };
         Self::of_corners(corners, Arc::new(fabric))
     }
@@ -161,6 +165,16 @@ impl Scene {
         &self.fabric.triangles
     }
 
+    /// Whether the tree is bare in winter.
+    pub(super) fn sheds_leaves(&self) -> bool {
+        self.fabric.sheds_leaves
+    }
+
+    /// How many triangles there are to see: those of the wood come first.
+    pub(super) fn triangles_in(&self, sight: Sight) -> usize {
+        if sight == Sight::Wood { self.fabric.wood_triangles } else { self.fabric.triangles.len() }
+    }
+
     pub(super) fn is_leaf(&self, triangle: usize) -> bool {
         triangle >= self.fabric.wood_triangles
     }
@@ -185,7 +199,10 @@ impl Scene {
     /// What decides whether a triangle stops rays, or lets them through a gap between leaves.
     pub(super) fn gate(&self, triangle: usize, sight: Sight) -> Gate<'_> {
         if !self.is_leaf(triangle) {
-            return if sight == Sight::Tree || !self.fabric.of_stem[triangle] { Gate::Shut } else { Gate::Open };
+            return if sight == Sight::Crown && self.fabric.of_stem[triangle] { Gate::Open } else { Gate::Shut };
+        }
+        if sight == Sight::Wood {
+            return Gate::Open;
         }
         let corners = self.corners_of(triangle);
         let uvs = corners.map(|corner| corner.uv);

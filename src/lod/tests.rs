@@ -131,13 +131,31 @@ fn trees_of_an_atlas_have_views_as_if_alone() {
     let atlas = ViewAtlas::bake(&scenes, &small().views);
     let tall = scenes.iter().flat_map(|scene| &scene.corners).map(|corner| corner.position.y).fold(0.0, f32::max);
     assert!((atlas.frame.centre.y + atlas.frame.half_height_m) > tall);
-    assert_eq!(atlas.colour.height, 3 * 4 * atlas.view_texels.y);
+    assert_eq!(atlas.colour.height, 2 * 3 * 4 * atlas.view_texels.y);
     for view in views_of(&atlas).filter(|(tree, _)| *tree == 0).map(|(_, view)| view) {
         let [one, other, again] = [0, 1, 2].map(|tree| view_of(&atlas, tree, view, 0));
         assert!(one == again && one != other, "{view}");
     }
     let place = atlas.atlas_place(1, UVec2::new(2, 3), Vec2::new(0.5, 0.25));
-    assert!(place.distance(Vec2::new(2.5 / 4.0, 7.25 / 12.0)) < 1e-6, "{place}");
+    assert!(place.distance(Vec2::new(2.5 / 4.0, 7.25 / 24.0)) < 1e-6, "{place}");
+}
+
+#[test]
+fn what_sheds_its_leaves_has_views_of_its_wood_alone() {
+    let (species, model, textures) = planted("birch", 1.0);
+    let atlas = ViewAtlas::bake(&[Scene::new(&species, &model, &textures)], &small().views);
+    assert!(atlas.has_bare && atlas.blocks() == 2);
+    for (_, view) in views_of(&atlas) {
+        let [leafy, bare] = [0, 1].map(|tree| view_of(&atlas, tree, view, 0));
+        assert!(cover(&bare) > 0.0 && cover(&bare) < 0.7 * cover(&leafy), "{view}: {}", cover(&bare));
+        let seen = bare[0].iter().zip(&bare[1]).filter(|(colour, _)| colour[3] > 0);
+        assert!(seen.clone().count() > 20 && seen.clone().all(|(_, surface)| surface[3] == 0), "{view}: leaves");
+        // A ray that hits wood alone hits the tree.
+        assert!(bare[0].iter().zip(&leafy[0]).all(|(bare, leafy)| bare[3] <= leafy[3]), "{view}");
+    }
+    let (fir, model, textures) = planted("fir", 0.3);
+    let evergreen = ViewAtlas::bake(&[Scene::new(&fir, &model, &textures)], &small().views);
+    assert!(!evergreen.has_bare && evergreen.blocks() == 1);
 }
 
 #[test]

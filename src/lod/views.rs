@@ -18,7 +18,7 @@ use super::{
     chart::{view_direction, view_place, views_towards},
     film::{Alpha, Film},
     projection::Projection,
-    scene::Scene,
+    scene::{Scene, Sight},
     settings::ViewSettings,
 };
 use crate::texture::TextureData;
@@ -30,11 +30,14 @@ const MOST_SLENDER: f32 = 4.0;
 /// How many texels are left free around the tree in a tile.
 const MARGIN_TEXELS: f32 = 1.0;
 
-/// The views of one tree, or of several of a species, one tree's below another's.
+/// The views of one tree, or of several of a species, one tree's below another's; and below all of them, where leaves are
+/// shed, once more each tree without any.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ViewAtlas {
     /// Number of trees.
     pub trees: u32,
+    /// Whether the same trees follow as they are in winter.
+    pub has_bare: bool,
     /// Views of a tree each way.
     pub across: u32,
     /// Width and height of a view in the first mip, texels.
@@ -148,9 +151,12 @@ impl ViewAtlas {
         let view_texels = frame.tile(settings.view_texels);
         let frame = frame.with_margin(view_texels);
         let tile = [view_texels.x as usize, view_texels.y as usize];
-        let developed = expose(scenes, settings, tile, &frame).developed(tile, LEAST_TILE, Alpha::Share);
+        let has_bare = scenes.iter().any(Scene::sheds_leaves);
+        let sights: &[Sight] = if has_bare { &[Sight::Tree, Sight::Wood] } else { &[Sight::Tree] };
+        let developed = expose(scenes, sights, settings, tile, &frame).developed(tile, LEAST_TILE, Alpha::Share);
         Self {
             trees: scenes.len() as u32,
+            has_bare,
             across: settings.across,
             view_texels,
             frame,
@@ -165,11 +171,18 @@ impl ViewAtlas {
         views_towards(to_eye, self.across).map(|one| (ViewBasis::of_view(one.view, self.across), one.view, one.weight))
     }
 
-    /// Place in the atlas, 0 to 1 each way, of a place on the tile of a view of a tree.
+    /// How often there are views of a tree, one below another: twice as often as there are trees where they have bare ones.
+    #[must_use]
+    pub fn blocks(&self) -> u32 {
+        self.trees * (1 + u32::from(self.has_bare))
+    }
+
+    /// Place in the atlas, 0 to 1 each way, of a place on the tile of a view of a tree; as it is in winter, if `trees` is
+    /// added to its number.
     #[must_use]
     pub fn atlas_place(&self, tree: u32, view: UVec2, place: Vec2) -> Vec2 {
         let tile = (view + UVec2::new(0, tree * self.across)).as_vec2() + place.clamp(Vec2::ZERO, Vec2::ONE);
-        tile / UVec2::new(self.across, self.across * self.trees).as_vec2()
+        tile / UVec2::new(self.across, self.across * self.blocks()).as_vec2()
     }
 
     /// The view nearest to a direction from the tree to the eye.
@@ -179,16 +192,17 @@ impl ViewAtlas {
     }
 }
 
-fn expose(scenes: &[Scene], settings: &ViewSettings, tile: [usize; 2], frame: &ViewFrame) -> Film {
+fn expose(scenes: &[Scene], sights: &[Sight], settings: &ViewSettings, tile: [usize; 2], frame: &ViewFrame) -> Film {
     let (across, per_texel) = (settings.across, settings.rays as usize);
     let [width, height] = tile.map(|texels| across as usize * texels);
-    let mut film = Film::new(width, height * scenes.len());
-    for (tree, scene) in scenes.iter().enumerate() {
+    let mut film = Film::new(width, height * scenes.len() * sights.len());
+    let shots = sights.iter().flat_map(|sight| scenes.iter().map(move |scene| (sight, scene)));
+    for (block, (&sight, scene)) in shots.enumerate() {
         let mut projection = Projection::new(scene, tile.map(|texels| texels * per_texel));
         for (row, column) in (0..across).flat_map(|row| (0..across).map(move |column| (row, column))) {
             let basis = ViewBasis::of_view(UVec2::new(column, row), across);
-            projection.look(&basis, frame.centre, frame.half_m(&basis));
-            let corner = [column as usize * tile[0], tree * height + row as usize * tile[1]];
+            projection.look(&basis, frame.centre, frame.half_m(&basis), sight);
+            let corner = [column as usize * tile[0], block * height + row as usize * tile[1]];
             film.record(corner, tile, per_texel, |x, y| projection.sample(x, y));
         }
     }

@@ -5,6 +5,7 @@ mod sheet;
 mod stand;
 
 use crate::report::Report;
+use bevy_windwood::tree::Season;
 use image::RgbImage;
 use sheet::Sheet;
 use stand::{Shot, Stand};
@@ -39,8 +40,8 @@ struct Found {
     abrupt: f64,
 }
 
-/// All species, or one of them.
-pub fn run(picture: &Path, only: Option<&str>) -> Report {
+/// All species, or one of them, at a time of the year.
+pub fn run(picture: &Path, only: Option<&str>, year: f32) -> Report {
     let mut sheet = Sheet::default();
     let [mut worst, mut worst_painted, mut worst_paper] = [Found::default(); 3];
     println!(
@@ -48,7 +49,7 @@ pub fn run(picture: &Path, only: Option<&str>) -> Report {
         "species", "change", "coverage", "outline", "colour", "pop", "at once"
     );
     for species in SPECIES.into_iter().filter(|species| only.is_none_or(|only| *species == only)) {
-        let mut stand = match Stand::new(species) {
+        let mut stand = match Stand::new(species, Season { year }) {
             Ok(stand) => stand,
             Err(error) => {
                 eprintln!("{species}: {error}");

@@ -55,7 +55,7 @@ pub fn is_background(pixel: &Rgb<u8>) -> bool {
 
 impl Stand {
     /// Plants a species and waits for its levels.
-    pub fn new(species: &str) -> Result<Self, String> {
+    pub fn new(species: &str, season: Season) -> Result<Self, String> {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("assets/species/{species}.species.ron"));
         let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         let planted = Species::from_ron(&text).map_err(|error| error.to_string())?;
@@ -69,6 +69,7 @@ impl Stand {
         let world = app.world_mut();
         world.insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
         world.insert_resource(GlobalAmbientLight { brightness: 700.0, ..default() });
+        world.insert_resource(season);
         world.insert_resource(Wind { speed: 8.0, ..default() });
         // There is but a sun.
         world.insert_resource(TreeLighting::SunOnly);

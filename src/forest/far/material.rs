@@ -64,7 +64,8 @@ struct ViewsUniform {
     half_height_m: f32,
     across: f32,
     translucency: f32,
-    trees: f32,
+    blocks: f32,
+    first_bare: f32,
     /// Gain and class of each tree's [`Lean`].
     leans: [Vec4; MOST_TREES as usize],
 }
@@ -75,6 +76,8 @@ pub(super) struct FarViews {
     surface: Image,
     pub frame: ViewFrame,
     pub trees: u32,
+    has_bare: bool,
+    blocks: u32,
     across: u32,
     /// How each tree leans.
     leans: Vec<Lean>,
@@ -87,7 +90,17 @@ impl FarViews {
         let mips = atlas.colour.mips.len().saturating_sub(1) as f32;
         let [colour, surface] =
             [&atlas.colour, &atlas.surface].map(|texture| image(texture, ImageAddressMode::ClampToEdge, mips));
-        Self { colour, surface, frame: atlas.frame, trees: atlas.trees, across: atlas.across, leans, summer }
+        Self {
+            colour,
+            surface,
+            frame: atlas.frame,
+            trees: atlas.trees,
+            has_bare: atlas.has_bare,
+            blocks: atlas.blocks(),
+            across: atlas.across,
+            leans,
+            summer,
+        }
     }
 }
 
@@ -120,7 +133,8 @@ pub(super) fn far_material(
                 half_height_m: views.frame.half_height_m,
                 across: views.across as f32,
                 translucency: species.foliage.translucency,
-                trees: views.trees as f32,
+                blocks: views.blocks as f32,
+                first_bare: if views.has_bare { views.trees as f32 } else { 0.0 },
                 leans: std::array::from_fn(|tree| {
                     let Lean { gain, class } = views.leans.get(tree).copied().unwrap_or_default();
                     Vec4::new(gain, class, 0.0, 0.0)

@@ -31,7 +31,7 @@ fn boxes_find_what_a_search_of_all_finds() {
             let mut around = |size: f32| Vec3::from_array(std::array::from_fn(|_| random.random_range(-size..size)));
             let to = Vec3::Y * (0.6 * height_m) + around(0.3 * height_m);
             let from = to + around(1.0).normalize_or(Vec3::X) * (2.0 * height_m);
-            let sight = if index % 2 == 0 { Sight::Tree } else { Sight::Crown };
+            let sight = [Sight::Tree, Sight::Crown, Sight::Wood][index % 3];
             let direction = (to - from).normalize();
             let (fast, slow) = (
                 scene.cast(from, direction, 3.0 * height_m, sight),
@@ -51,25 +51,27 @@ fn a_projection_sees_what_single_rays_see() {
     const RAYS: usize = 64;
     let mut projection = Projection::new(&scene, [RAYS, RAYS]);
     let (centre, half_m) = (Vec3::Y * (0.5 * model.height_m()), Vec3::splat(0.7 * model.height_m()));
-    let (mut unlike, mut hits) = (0, 0);
-    for to_eye in [Vec3::Z, Vec3::new(0.6, 0.64, -0.48), Vec3::Y] {
-        let basis = ViewBasis::towards(to_eye);
-        projection.look(&basis, centre, half_m);
-        for (x, y) in (0..RAYS).flat_map(|y| (0..RAYS).map(move |x| (x, y))) {
-            let place = 2.0 * (Vec2::new(x as f32, y as f32) + 0.5) / RAYS as f32 - 1.0;
-            let from =
-                centre + basis.right * (place.x * half_m.x) - basis.up * (place.y * half_m.y) + to_eye * half_m.z;
-            let ray = scene.cast(from, basis.forward, 2.0 * half_m.z, Sight::Tree);
-            let alike = match (projection.sample(x, y), ray) {
-                (Some(seen), Some(hit)) => (seen.depth - hit.distance_m / (2.0 * half_m.z)).abs() < 1e-4,
-                (seen, ray) => seen.is_none() == ray.is_none(),
-            };
-            unlike += usize::from(!alike);
-            hits += usize::from(ray.is_some());
+    for (sight, least) in [(Sight::Tree, 300), (Sight::Wood, 30)] {
+        let (mut unlike, mut hits) = (0, 0);
+        for to_eye in [Vec3::Z, Vec3::new(0.6, 0.64, -0.48), Vec3::Y] {
+            let basis = ViewBasis::towards(to_eye);
+            projection.look(&basis, centre, half_m, sight);
+            for (x, y) in (0..RAYS).flat_map(|y| (0..RAYS).map(move |x| (x, y))) {
+                let place = 2.0 * (Vec2::new(x as f32, y as f32) + 0.5) / RAYS as f32 - 1.0;
+                let from =
+                    centre + basis.right * (place.x * half_m.x) - basis.up * (place.y * half_m.y) + to_eye * half_m.z;
+                let ray = scene.cast(from, basis.forward, 2.0 * half_m.z, sight);
+                let alike = match (projection.sample(x, y), ray) {
+                    (Some(seen), Some(hit)) => (seen.depth - hit.distance_m / (2.0 * half_m.z)).abs() < 1e-4,
+                    (seen, ray) => seen.is_none() == ray.is_none(),
+                };
+                unlike += usize::from(!alike);
+                hits += usize::from(ray.is_some());
+            }
         }
+        // Rays along an edge, of a triangle or of a texel, may fall to either side.
+        assert!(hits > least && unlike * 100 < hits, "{sight:?}: {unlike} of {hits}");
     }
-    // Rays along an edge, of a triangle or of a texel, may fall to either side.
-    assert!(hits > 300 && unlike * 100 < hits, "{unlike} of {hits}");
 }
 
 /// Share of a tile's rays that the tree stops, by going through all triangles for each ray, without scene or projection.

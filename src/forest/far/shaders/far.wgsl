@@ -10,8 +10,10 @@ struct Views {
     // Views each way.
     across: f32,
     translucency: f32,
-    // Trees whose views there are, one below another.
-    trees: f32,
+    // How many times views of a tree there are, one below another, and with which those begin that have no leaves: 0 where
+    // trees are evergreen.
+    blocks: f32,
+    first_bare: f32,
     // Gain and class of each tree's lean: `lod/lean.rs`.
     leans: array<vec4<f32>, 4>,
 }
@@ -117,8 +119,9 @@ struct Seen {
     leaf: f32,
 }
 
-// `point` lies on the card that faces the direction at `place` on the chart.
-fn seen_at(tree: f32, place: vec2<f32>, point: vec3<f32>) -> Seen {
+// `point` lies on the card that faces the direction at `place` on the chart; whether there are leaves may differ from point
+// to point.
+fn seen_at(tree: f32, place: vec2<f32>, point: vec3<f32>, has_leaves: bool) -> Seen {
     let from_centre = point - views.centre;
     let along_x = dpdx(point);
     let along_y = dpdy(point);
@@ -142,9 +145,10 @@ fn seen_at(tree: f32, place: vec2<f32>, point: vec3<f32>) -> Seen {
     let threshold = (drawn - start) / max(weight, 1e-6);
 
     let basis = basis_towards(above_horizon(view_direction(view / (views.across - 1.0))));
-    let tiles = views.across * vec2(1.0, views.trees);
+    let tiles = views.across * vec2(1.0, views.blocks);
+    let block = round(tree) + select(views.first_bare, 0.0, has_leaves);
     let on_tile = clamp(0.5 + way_on_tile(basis, from_centre), vec2(0.0), vec2(1.0));
-    let uv = (view + vec2(0.0, views.across * round(tree)) + on_tile) / tiles;
+    let uv = (view + vec2(0.0, views.across * block) + on_tile) / tiles;
     // Neighbours may have drawn other views: the derivatives are those on this one.
     let uv_x = way_on_tile(basis, along_x) / tiles;
     let uv_y = way_on_tile(basis, along_y) / tiles;

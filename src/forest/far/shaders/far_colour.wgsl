@@ -11,17 +11,16 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     if level::leaves_out(in.position, in.visibility_range_dither) {
         discard;
     }
-    let seen = far::seen_at(in.color.a, in.uv, in.color.xyz);
     let tint = in.uv_b.y;
     // Leaves come and go, and turn, at a place of the crown's own time.
     let rank = far::leaf_rank(in.color.xyz);
     let state = season::leaves(frame.year, tint - 0.5, rank);
-    let is_leaf = seen.leaf > 0.3;
-    if !seen.is_there || (is_leaf && rank > state.size) {
+    let seen = far::seen_at(in.color.a, in.uv, in.color.xyz, rank < state.size);
+    if !seen.is_there {
         discard;
     }
     var colour = seen.colour;
-    if is_leaf {
+    if seen.leaf > 0.3 {
         let own = tint - 0.5;
         colour = season::recoloured(colour, state.autumn - state.youth, saturate(0.5 + 1.5 * own));
         colour *= vec3(1.0 + 0.2 * own, 1.0 + 0.06 * own, 1.0 - 0.25 * own);

@@ -9,10 +9,10 @@ fn cut_out(in: prepass_io::VertexOutput) {
     if level::leaves_out(in.position, in.visibility_range_dither) {
         discard;
     }
-    let seen = far::seen_at(in.color.a, in.uv, in.color.xyz);
     let rank = far::leaf_rank(in.color.xyz);
     let state = season::leaves(frame.year, in.uv_b.y - 0.5, rank);
-    if !seen.is_there || (seen.leaf > 0.3 && rank > state.size) {
+    let seen = far::seen_at(in.color.a, in.uv, in.color.xyz, rank < state.size);
+    if !seen.is_there {
         discard;
     }
 }
