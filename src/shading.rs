@@ -1,6 +1,6 @@
 //! What all our materials need: textures with their mips as images, and names for both stages of a shader.
 
-use crate::texture::TextureData;
+use crate::texture::{Texels, TextureData};
 use bevy::{
     asset::RenderAssetUsages,
     image::{Image, ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor},
@@ -13,7 +13,11 @@ use bevy::{
 
 /// A texture as an image, with the mips that it brings. `coarsest_mip` is the last that is used.
 pub(crate) fn image(texture: &TextureData, address_mode: ImageAddressMode, coarsest_mip: f32) -> Image {
-    let format = if texture.srgb { TextureFormat::Rgba8UnormSrgb } else { TextureFormat::Rgba8Unorm };
+    let format = match texture.texels {
+        Texels::Colour => TextureFormat::Rgba8UnormSrgb,
+        Texels::Linear => TextureFormat::Rgba8Unorm,
+        Texels::Share => TextureFormat::R8Unorm,
+    };
     let size = Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: 1 };
     let mut image = Image::new_uninit(size, TextureDimension::D2, format, RenderAssetUsages::RENDER_WORLD);
     image.texture_descriptor.mip_level_count = texture.mips.len() as u32;

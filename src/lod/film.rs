@@ -5,7 +5,7 @@
 
 use bevy::math::Vec3;
 
-use crate::texture::{HALF_A_STEP, MASK_CUT_OFF, TextureData, colour_bytes, linear_bytes};
+use crate::texture::{HALF_A_STEP, MASK_CUT_OFF, Texels, TextureData, byte, colour_bytes, linear_bytes};
 
 /// How much a texel's coverage is mixed with that of the next coarser mip. The few rays of a texel make few steps of
 /// coverage; this makes steps between them, and the outline a little smoother.
@@ -140,7 +140,12 @@ impl Film {
         (colour / cover.max(1e-6)).to_array()
     }
 
-    fn halved(&self) -> Self {
+    /// Share of the rays of each texel that hit something.
+    pub(super) fn covers(&self) -> Vec<u8> {
+        self.texels.iter().map(|texel| byte(texel.cover)).collect()
+    }
+
+    pub(super) fn halved(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let at = |x: usize, y: usize| &self.texels[y.min(self.height - 1) * self.width + x.min(self.width - 1)];
         let texel = |index: usize| {
@@ -179,8 +184,8 @@ impl Film {
             around = Some((film.width, shown));
         }
         Developed {
-            colour: TextureData { width, height, mips: colours, srgb: true },
-            surface: TextureData { width, height, mips: surfaces, srgb: false },
+            colour: TextureData { width, height, mips: colours, texels: Texels::Colour },
+            surface: TextureData { width, height, mips: surfaces, texels: Texels::Linear },
         }
     }
 

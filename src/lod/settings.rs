@@ -60,9 +60,9 @@ pub struct CylinderSettings {
 pub struct ViewSettings {
     /// Views each way: a power of two, 2 to 32.
     pub across: u32,
-    /// Longer side of a view, texels: a power of two, 16 to 512.
+    /// Longer side of a view, texels: a power of two, 16 to 512. Its outline has twice as many.
     pub view_texels: u32,
-    /// Rays of a texel, each way: 1 to 8.
+    /// Rays of a texel of the outline, each way: 1 to 4.
     pub rays: u32,
 }
 
@@ -106,7 +106,7 @@ impl Default for CylinderSettings {
 impl Default for ViewSettings {
     /// Views some 15 degrees apart.
     fn default() -> Self {
-        Self { across: 8, view_texels: 64, rays: 2 }
+        Self { across: 8, view_texels: 64, rays: 1 }
     }
 }
 
@@ -152,7 +152,7 @@ impl ViewSettings {
     fn validate(&self) -> Result<(), SettingError> {
         require_power_of_two("across", self.across, 2..=32)?;
         require_power_of_two("view_texels", self.view_texels, 16..=512)?;
-        require("rays", self.rays as f32, 1.0..=8.0)
+        require("rays", self.rays as f32, 1.0..=4.0)
     }
 }
 

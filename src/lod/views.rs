@@ -16,17 +16,19 @@ use bevy::math::{UVec2, Vec2, Vec3};
 
 use super::{
     chart::{view_direction, view_place, views_towards},
-    film::{Alpha, Film},
+    film::{Alpha, Developed, Film},
     projection::Projection,
     scene::{Scene, Sight},
     settings::ViewSettings,
 };
-use crate::texture::TextureData;
+use crate::texture::{Texels, TextureData};
 
 /// Tiles have at least so many texels each way in the coarsest mip.
 const LEAST_TILE: usize = 2;
 /// Tiles are at most so many times as long as they are wide.
 const MOST_SLENDER: f32 = 4.0;
+/// Texels of the outline across a texel of colour.
+const FINER: usize = 2;
 /// How many texels are left free around the tree in a tile.
 const MARGIN_TEXELS: f32 = 1.0;
 
@@ -40,12 +42,14 @@ pub struct ViewAtlas {
     pub has_bare: bool,
     /// Views of a tree each way.
     pub across: u32,
-    /// Width and height of a view in the first mip, texels.
+    /// Width and height of a view in the first mip of its colours, texels.
     pub view_texels: UVec2,
     /// What the views are of.
     pub frame: ViewFrame,
-    /// Colour, sRGB, spread beyond the outline; in alpha the share of rays that hit the tree. Mips end where a tile is 2
-    /// texels wide or high.
+    /// The share of rays that hit the tree, in texels half as large as those of colour: stems and gaps are thinner than what
+    /// differs in colour. Mips end where a tile is 2 texels wide or high, in the other textures as well.
+    pub outline: TextureData,
+    /// Colour, sRGB, spread beyond the outline; in alpha the share of rays that hit the tree.
     pub colour: TextureData,
     /// Linear: in red, green and blue half the mean tree-local normal and a half (where normals differ, their mean is
     /// shorter than 1), in alpha the share of the species' translucency (0 for wood).
@@ -153,16 +157,25 @@ impl ViewAtlas {
         let tile = [view_texels.x as usize, view_texels.y as usize];
         let has_bare = scenes.iter().any(Scene::sheds_leaves);
         let sights: &[Sight] = if has_bare { &[Sight::Tree, Sight::Wood] } else { &[Sight::Tree] };
-        let developed = expose(scenes, sights, settings, tile, &frame).developed(tile, LEAST_TILE, Alpha::Share);
-        Self {
+        let width = settings.across * view_texels.x;
+        let mut atlas = Self {
             trees: scenes.len() as u32,
             has_bare,
             across: settings.across,
             view_texels,
             frame,
-            colour: developed.colour,
-            surface: developed.surface,
+            outline: TextureData::empty(width * FINER as u32, Texels::Share),
+            colour: TextureData::empty(width, Texels::Colour),
+            surface: TextureData::empty(width, Texels::Linear),
+        };
+        for (&sight, scene) in sights.iter().flat_map(|sight| scenes.iter().map(move |scene| (sight, scene))) {
+            let film = expose(scene, sight, settings, tile, &frame);
+            let Developed { colour, surface } = film.halved().developed(tile, LEAST_TILE, Alpha::Share);
+            atlas.outline.add_below(&outline(&film, &colour));
+            atlas.colour.add_below(&colour);
+            atlas.surface.add_below(&surface);
         }
+        atlas
     }
 
     /// The three views around a direction from the tree to the eye, with their axes and shares.
@@ -192,19 +205,25 @@ impl ViewAtlas {
     }
 }
 
-fn expose(scenes: &[Scene], sights: &[Sight], settings: &ViewSettings, tile: [usize; 2], frame: &ViewFrame) -> Film {
+/// All views of a tree, in texels of the outline.
+fn expose(scene: &Scene, sight: Sight, settings: &ViewSettings, tile: [usize; 2], frame: &ViewFrame) -> Film {
     let (across, per_texel) = (settings.across, settings.rays as usize);
+    let tile = tile.map(|texels| texels * FINER);
     let [width, height] = tile.map(|texels| across as usize * texels);
-    let mut film = Film::new(width, height * scenes.len() * sights.len());
-    let shots = sights.iter().flat_map(|sight| scenes.iter().map(move |scene| (sight, scene)));
-    for (block, (&sight, scene)) in shots.enumerate() {
-        let mut projection = Projection::new(scene, tile.map(|texels| texels * per_texel));
-        for (row, column) in (0..across).flat_map(|row| (0..across).map(move |column| (row, column))) {
-            let basis = ViewBasis::of_view(UVec2::new(column, row), across);
-            projection.look(&basis, frame.centre, frame.half_m(&basis), sight);
-            let corner = [column as usize * tile[0], block * height + row as usize * tile[1]];
-            film.record(corner, tile, per_texel, |x, y| projection.sample(x, y));
-        }
+    let mut film = Film::new(width, height);
+    let mut projection = Projection::new(scene, tile.map(|texels| texels * per_texel));
+    for (row, column) in (0..across).flat_map(|row| (0..across).map(move |column| (row, column))) {
+        let basis = ViewBasis::of_view(UVec2::new(column, row), across);
+        projection.look(&basis, frame.centre, frame.half_m(&basis), sight);
+        let corner = [column as usize * tile[0], row as usize * tile[1]];
+        film.record(corner, tile, per_texel, |x, y| projection.sample(x, y));
     }
     film
+}
+
+/// What a film covers. From its second mip on that is the alpha of the colours, which were developed at half its size.
+fn outline(film: &Film, colour: &TextureData) -> TextureData {
+    let coarser = colour.mips.iter().map(|mip| mip.iter().skip(3).step_by(4).copied().collect());
+    let mips = std::iter::once(film.covers()).chain(coarser).collect();
+    TextureData { width: film.width as u32, height: film.height as u32, mips, texels: Texels::Share }
 }

@@ -6,17 +6,28 @@
 
 use std::sync::LazyLock;
 
-/// A texture of 8-bit RGBA with mips down to one texel.
+/// A texture of 8-bit channels with mips.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextureData {
     /// Width of the first mip, texels, a power of two.
     pub width: u32,
     /// Height of the first mip, texels, a power of two.
     pub height: u32,
-    /// Rows of RGBA from the top, one `Vec` per mip.
+    /// Rows from the top, one `Vec` per mip.
     pub mips: Vec<Vec<u8>>,
-    /// Whether the colour channels are sRGB (colours) or linear (normals).
-    pub srgb: bool,
+    /// What a texel is.
+    pub texels: Texels,
+}
+
+/// What a texel of a texture is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Texels {
+    /// Red, green and blue as sRGB, and a linear alpha.
+    Colour,
+    /// Four linear channels, such as normals.
+    Linear,
+    /// One linear channel.
+    Share,
 }
 
 /// Alpha above which a texel of a mask is drawn.
@@ -32,6 +43,20 @@ pub(crate) struct Canvas {
     pub height: usize,
     /// Linear red, green, blue and alpha, 0..1 (normals: -1..1, alpha free for another measure, 0..1).
     pub texels: Vec<[f32; 4]>,
+}
+
+impl TextureData {
+    /// A texture of no height, to which others of its width are to be added.
+    pub(crate) fn empty(width: u32, texels: Texels) -> Self {
+        Self { width, height: 0, mips: Vec::new(), texels }
+    }
+
+    /// Adds a texture of the same width, kind and number of mips, mip by mip, at the bottom.
+    pub(crate) fn add_below(&mut self, other: &Self) {
+        self.height += other.height;
+        self.mips.resize_with(other.mips.len(), Vec::new);
+        self.mips.iter_mut().zip(&other.mips).for_each(|(own, other)| own.extend(other));
+    }
 }
 
 impl Canvas {
@@ -89,7 +114,7 @@ impl Canvas {
 
     /// Opaque colours.
     pub(crate) fn into_colour_texture(self) -> TextureData {
-        self.into_texture(|canvas| canvas.halved(|_| 1.0), colour_bytes, true)
+        self.into_texture(|canvas| canvas.halved(|_| 1.0), colour_bytes, Texels::Colour)
     }
 
     /// Colours with a mask whose coverage stays the same in every mip.
@@ -100,20 +125,25 @@ impl Canvas {
             half.scale_alpha_to(coverage);
             half
         };
-        self.into_texture(shrink, colour_bytes, true)
+        self.into_texture(shrink, colour_bytes, Texels::Colour)
     }
 
     /// Measures that are no colours, each channel averaged by itself.
     pub(crate) fn into_linear_texture(self) -> TextureData {
-        self.into_texture(|canvas| canvas.halved(|_| 1.0), linear_bytes, false)
+        self.into_texture(|canvas| canvas.halved(|_| 1.0), linear_bytes, Texels::Linear)
     }
 
     /// Unit normals in tangent space; alpha is kept.
     pub(crate) fn into_normal_texture(self) -> TextureData {
-        self.into_texture(|canvas| canvas.halved(|_| 1.0), normal_bytes, false)
+        self.into_texture(|canvas| canvas.halved(|_| 1.0), normal_bytes, Texels::Linear)
     }
 
-    fn into_texture(self, shrink: impl Fn(&Self) -> Self, bytes: fn(&[f32; 4]) -> [u8; 4], srgb: bool) -> TextureData {
+    fn into_texture(
+        self,
+        shrink: impl Fn(&Self) -> Self,
+        bytes: fn(&[f32; 4]) -> [u8; 4],
+        texels: Texels,
+    ) -> TextureData {
         let (width, height) = (self.width as u32, self.height as u32);
         let mut mips = Vec::new();
         let mut canvas = self;
@@ -124,7 +154,7 @@ impl Canvas {
             }
             canvas = shrink(&canvas);
         }
-        TextureData { width, height, mips, srgb }
+        TextureData { width, height, mips, texels }
     }
 }
 
@@ -142,7 +172,7 @@ pub(crate) fn linear_bytes(texel: &[f32; 4]) -> [u8; 4] {
     texel.map(byte)
 }
 
-fn byte(value: f32) -> u8 {
+pub(crate) fn byte(value: f32) -> u8 {
     (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
 }
 

@@ -6,5 +6,5 @@ pub mod canvas;
 pub mod fourier;
 
 pub(crate) use blur::blurred;
-pub(crate) use canvas::{Canvas, HALF_A_STEP, colour_bytes, linear, linear_bytes, mix};
-pub use canvas::{MASK_CUT_OFF, TextureData};
+pub(crate) use canvas::{Canvas, HALF_A_STEP, byte, colour_bytes, linear, linear_bytes, mix};
+pub use canvas::{MASK_CUT_OFF, Texels, TextureData};

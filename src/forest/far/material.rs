@@ -3,7 +3,7 @@
 use super::mesh::{ATTRIBUTE_FAR, MOST_TREES};
 use crate::{
     lod::{Lean, ViewAtlas, ViewFrame},
-    shading::{define, image, lay_out},
+    shading::{ALL_MIPS, define, image, lay_out},
     sway::{LitAsTrees, SeasonUniform, StandTables, TreeLights},
     tree::Species,
 };
@@ -32,6 +32,8 @@ pub struct FarExtension {
     colour: Handle<Image>,
     #[texture(101)]
     surface: Handle<Image>,
+    #[texture(109)]
+    outline: Handle<Image>,
     /// The clock of the frame.
     #[storage(103, read_only)]
     frame: Handle<ShaderBuffer>,
@@ -66,6 +68,7 @@ struct ViewsUniform {
     translucency: f32,
     blocks: f32,
     first_bare: f32,
+    texel_m: f32,
     /// Gain and class of each tree's [`Lean`].
     leans: [Vec4; MOST_TREES as usize],
 }
@@ -74,11 +77,14 @@ struct ViewsUniform {
 pub(super) struct FarViews {
     colour: Image,
     surface: Image,
+    outline: Image,
     pub frame: ViewFrame,
     pub trees: u32,
     has_bare: bool,
     blocks: u32,
     across: u32,
+    /// Width of a texel of the outline, m.
+    texel_m: f32,
     /// How each tree leans.
     leans: Vec<Lean>,
     /// The colour of the leaves.
@@ -87,17 +93,18 @@ pub(super) struct FarViews {
 
 impl FarViews {
     pub fn new(atlas: &ViewAtlas, leans: Vec<Lean>, summer: [f32; 3]) -> Self {
-        let mips = atlas.colour.mips.len().saturating_sub(1) as f32;
-        let [colour, surface] =
-            [&atlas.colour, &atlas.surface].map(|texture| image(texture, ImageAddressMode::ClampToEdge, mips));
+        let [colour, surface, outline] = [&atlas.colour, &atlas.surface, &atlas.outline]
+            .map(|texture| image(texture, ImageAddressMode::ClampToEdge, ALL_MIPS));
         Self {
             colour,
             surface,
+            outline,
             frame: atlas.frame,
             trees: atlas.trees,
             has_bare: atlas.has_bare,
             blocks: atlas.blocks(),
             across: atlas.across,
+            texel_m: 2.0 * atlas.frame.radius_m * atlas.across as f32 / atlas.outline.width.max(1) as f32,
             leans,
             summer,
         }
@@ -126,6 +133,7 @@ pub(super) fn far_material(
         extension: FarExtension {
             colour: images.add(views.colour),
             surface: images.add(views.surface),
+            outline: images.add(views.outline),
             frame: tables.frame.clone(),
             views: ViewsUniform {
                 centre: views.frame.centre,
@@ -135,6 +143,7 @@ pub(super) fn far_material(
                 translucency: species.foliage.translucency,
                 blocks: views.blocks as f32,
                 first_bare: if views.has_bare { views.trees as f32 } else { 0.0 },
+                texel_m: views.texel_m,
                 leans: std::array::from_fn(|tree| {
                     let Lean { gain, class } = views.leans.get(tree).copied().unwrap_or_default();
                     Vec4::new(gain, class, 0.0, 0.0)

@@ -14,12 +14,15 @@ struct Views {
     // trees are evergreen.
     blocks: f32,
     first_bare: f32,
+    // Width of a texel of the outlines, m.
+    texel_m: f32,
     // Gain and class of each tree's lean: `lod/lean.rs`.
     leans: array<vec4<f32>, 4>,
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(100) var colours: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(101) var surfaces: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(109) var outlines: texture_2d<f32>;
 @group(#{MATERIAL_BIND_GROUP}) @binding(102) var views_sampler: sampler;
 @group(#{MATERIAL_BIND_GROUP}) @binding(104) var<uniform> views: Views;
 
@@ -109,9 +112,17 @@ fn lot(place_m: vec2<f32>, pixel_m: f32) -> f32 {
     return select(below, 1.0 - below, mixed > 0.5);
 }
 
-// What is seen at a point of a card.
-struct Seen {
+// A place in the atlas, with its derivatives.
+struct Spot {
+    // Whether there is anything of the tree.
     is_there: bool,
+    uv: vec2<f32>,
+    uv_x: vec2<f32>,
+    uv_y: vec2<f32>,
+}
+
+// What is seen there.
+struct Seen {
     colour: vec3<f32>,
     // The mean of unit normals: the shorter, the more they differ.
     normal: vec3<f32>,
@@ -121,13 +132,14 @@ struct Seen {
 
 // `point` lies on the card that faces the direction at `place` on the chart; whether there are leaves may differ from point
 // to point.
-fn seen_at(tree: f32, place: vec2<f32>, point: vec3<f32>, has_leaves: bool) -> Seen {
+fn spot_at(tree: f32, place: vec2<f32>, point: vec3<f32>, has_leaves: bool) -> Spot {
     let from_centre = point - views.centre;
     let along_x = dpdx(point);
     let along_y = dpdy(point);
     let facing = basis_towards(view_direction(place));
     let on_card = vec2(dot(from_centre, facing.right), dot(from_centre, facing.up));
-    let drawn = lot(on_card, max(length(along_x), length(along_y)));
+    let pixel_m = max(length(along_x), length(along_y));
+    let drawn = lot(on_card, pixel_m);
     // The lot picks a view, and what of it lies within the view's share is a lot again.
     let three = views_around(place);
     let first = three.weights.x;
@@ -142,7 +154,9 @@ fn seen_at(tree: f32, place: vec2<f32>, point: vec3<f32>, has_leaves: bool) -> S
         start = first;
     }
     let weight = select(select(three.weights.z, three.weights.y, drawn < second), first, drawn < first);
-    let threshold = (drawn - start) / max(weight, 1e-6);
+    // Where texels are as large as pixels, an outline is a line, and no lot says whether there is anything.
+    let clarity = saturate(2.0 - pixel_m / views.texel_m);
+    let threshold = mix((drawn - start) / max(weight, 1e-6), 0.5, clarity);
 
     let basis = basis_towards(above_horizon(view_direction(view / (views.across - 1.0))));
     let tiles = views.across * vec2(1.0, views.blocks);
@@ -152,9 +166,14 @@ fn seen_at(tree: f32, place: vec2<f32>, point: vec3<f32>, has_leaves: bool) -> S
     // Neighbours may have drawn other views: the derivatives are those on this one.
     let uv_x = way_on_tile(basis, along_x) / tiles;
     let uv_y = way_on_tile(basis, along_y) / tiles;
-    let colour = textureSampleGrad(colours, views_sampler, uv, uv_x, uv_y);
-    let surface = textureSampleGrad(surfaces, views_sampler, uv, uv_x, uv_y);
-    return Seen(colour.a > threshold, colour.rgb, 2.0 * surface.rgb - 1.0, surface.a);
+    let outline = textureSampleGrad(outlines, views_sampler, uv, uv_x, uv_y).r;
+    return Spot(outline > threshold, uv, uv_x, uv_y);
+}
+
+fn seen_at(spot: Spot) -> Seen {
+    let colour = textureSampleGrad(colours, views_sampler, spot.uv, spot.uv_x, spot.uv_y);
+    let surface = textureSampleGrad(surfaces, views_sampler, spot.uv, spot.uv_x, spot.uv_y);
+    return Seen(colour.rgb, 2.0 * surface.rgb - 1.0, surface.a);
 }
 
 // When in the year the leaves at a place of the crown come and go, 0..1 among all.

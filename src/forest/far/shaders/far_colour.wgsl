@@ -15,10 +15,11 @@ fn fragment(in: VertexOutput, @builtin(front_facing) is_front: bool) -> Fragment
     // Leaves come and go, and turn, at a place of the crown's own time.
     let rank = far::leaf_rank(in.color.xyz);
     let state = season::leaves(frame.year, tint - 0.5, rank);
-    let seen = far::seen_at(in.color.a, in.uv, in.color.xyz, rank < state.size);
-    if !seen.is_there {
+    let spot = far::spot_at(in.color.a, in.uv, in.color.xyz, rank < state.size);
+    if !spot.is_there {
         discard;
     }
+    let seen = far::seen_at(spot);
     var colour = seen.colour;
     if seen.leaf > 0.3 {
         let own = tint - 0.5;

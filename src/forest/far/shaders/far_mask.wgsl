@@ -11,8 +11,7 @@ fn cut_out(in: prepass_io::VertexOutput) {
     }
     let rank = far::leaf_rank(in.color.xyz);
     let state = season::leaves(frame.year, in.uv_b.y - 0.5, rank);
-    let seen = far::seen_at(in.color.a, in.uv, in.color.xyz, rank < state.size);
-    if !seen.is_there {
+    if !far::spot_at(in.color.a, in.uv, in.color.xyz, rank < state.size).is_there {
         discard;
     }
 }
