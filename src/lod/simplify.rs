@@ -9,10 +9,19 @@ use bevy::math::Vec3;
 use std::ops::Range;
 
 use super::settings::Reduction;
-use crate::tree::{TreeModel, leaf_mesh::LeafVertices, mesh::WoodVertices, skeleton::Skeleton};
+use crate::tree::{
+    TreeModel,
+    leaf_mesh::LeafVertices,
+    mesh::WoodVertices,
+    skeleton::{Skeleton, SkeletonBeam},
+};
 
 /// The fractional part of the golden ratio: no other step spreads any number of places more evenly on a circle.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// How many radii are tried for one below which branches may go, and what share of the last the next is.
+const RADII_TRIED: i32 = 16;
+const RADIUS_STEP: f32 = 0.8;
 
 /// Thinned meshes of one model, on the beams of the full one.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -45,6 +54,20 @@ pub fn thick_wood(wood: &WoodVertices, skeleton: &Skeleton, least_radius_m: f32)
         }
     }
     out
+}
+
+/// The greatest radius, m, up to a `most_m`, below which branches may go while what stays has that share of the sides of
+/// all wood: of a tree without leaves, branches are what is seen. 0 if not even the thinnest may go.
+#[must_use]
+pub fn bearable_radius_m(skeleton: &Skeleton, most_m: f32, share: f32) -> f32 {
+    let side_m2 = |beam: &SkeletonBeam| beam.length_m * (beam.base_radius_m + beam.tip_radius_m);
+    let all_m2: f32 = skeleton.beams.iter().map(side_m2).sum();
+    let bears = |radius_m: &f32| {
+        let stays = thick_beams(skeleton, *radius_m);
+        let left = skeleton.beams.iter().zip(stays).filter(|(_, stays)| *stays);
+        left.map(|(beam, _)| side_m2(beam)).sum::<f32>() >= share * all_m2
+    };
+    (0..RADII_TRIED).map(|tried| most_m * RADIUS_STEP.powi(tried)).find(bears).unwrap_or(0.0)
 }
 
 /// For each beam whether it is part of a branch that stays; stems always are.
@@ -205,6 +228,36 @@ mod tests {
             assert!(coarser.leaves.positions.len() < finer.leaves.positions.len());
             assert!(!coarser.wood.indices.is_empty() && coarser.wood.indices.len() < finer.wood.indices.len());
         }
+    }
+
+    #[test]
+    fn branches_go_only_while_enough_is_left_of_a_bare_tree() {
+        let model = oak();
+        let beams = &model.skeleton.beams;
+        let continuations = model.skeleton.continuations();
+        // Down to the ground, all that branches off is thick enough.
+        let stays = |radius_m: f32, mut beam: usize| loop {
+            let Some(parent) = beams[beam].parent.map(|parent| parent as usize) else { return true };
+            if continuations[parent] != Some(beam as u32) && beams[beam].base_radius_m < radius_m {
+                return false;
+            }
+            beam = parent;
+        };
+        let side_m2 =
+            |beam: &usize| beams[*beam].length_m * 0.5 * (beams[*beam].base_radius_m + beams[*beam].tip_radius_m);
+        let all_m2: f32 = (0..beams.len()).map(|beam| side_m2(&beam)).sum();
+        let left = |radius_m| {
+            (0..beams.len()).filter(|beam| stays(radius_m, *beam)).map(|beam| side_m2(&beam)).sum::<f32>() / all_m2
+        };
+        let mut before_m = 0.3;
+        for share in [0.3, 0.5, 0.7, 0.9] {
+            let radius_m = bearable_radius_m(&model.skeleton, 0.3, share);
+            assert!(left(radius_m) > share, "{share}: {} by {radius_m} m", left(radius_m));
+            assert!(left(radius_m / RADIUS_STEP) < share, "{share}: more may go than below {radius_m} m");
+            assert!(radius_m <= before_m, "{share}: {radius_m} m");
+            before_m = radius_m;
+        }
+        assert_eq!(bearable_radius_m(&model.skeleton, 0.01, 0.3), 0.01);
     }
 
     #[test]

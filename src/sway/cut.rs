@@ -7,7 +7,9 @@ use super::{
 };
 use crate::{
     lod::{
-        CylinderLevel, EnvelopeVertices, LevelSettings, PlainVertices, Reduction, Scene, plain::plain, simplify::reduce,
+        CylinderLevel, EnvelopeVertices, LevelSettings, PlainVertices, Reduction, Scene,
+        plain::plain,
+        simplify::{bearable_radius_m, reduce},
     },
     tree::{
         Species, TreeModel,
@@ -23,6 +25,10 @@ use bevy::{
     prelude::*,
 };
 use std::sync::Arc;
+
+/// Of a tree that sheds its leaves, each level has at least that share of the wood: branches of birches are thin, and with
+/// all that may go from under the leaves of an oak, one would be a bare pole in winter.
+const LEAST_BARE: f32 = 0.45;
 
 /// All that is prepared of a species at one age.
 pub(super) struct Cut {
@@ -80,7 +86,15 @@ pub(super) fn cut(species: &Species, painting: bool, models: Vec<TreeModel>, sty
     let reductions: Vec<Reduction> = settings.reductions.iter().map(thinned).collect();
     let levels = |model: TreeModel| match (style, &textures) {
         (LevelStyle::Paper, Some(textures)) => paper_levels(species, model, textures, &settings),
-        (LevelStyle::Thinned, _) => thinned_levels(model, &reductions),
+        (LevelStyle::Thinned, _) if species.phenology.evergreen => thinned_levels(model, &reductions),
+        (LevelStyle::Thinned, _) => {
+            let bare = |part: &Reduction| Reduction {
+                least_radius_m: bearable_radius_m(&model.skeleton, part.least_radius_m, LEAST_BARE),
+                ..*part
+            };
+            let reductions: Vec<Reduction> = reductions.iter().map(bare).collect();
+            thinned_levels(model, &reductions)
+        }
         (LevelStyle::Full | LevelStyle::Paper, _) => vec![full_level(model, Cloth::Bark)],
     };
     let variant = |model: TreeModel| VariantCut { height_m: model.height_m(), levels: levels(model) };
