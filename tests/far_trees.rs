@@ -15,20 +15,21 @@ use support::capture;
 
 const SIZE: (u32, u32) = (320, 200);
 
-/// Pixels that trees cover of a picture of the same small wood, 250 m away, drawn near or far.
-fn covered(settings: ForestSettings) -> usize {
+/// Pixels that trees cover of a picture of the same small wood of a species, 250 m away, drawn near or far.
+fn covered(settings: ForestSettings, species: &str, season: Season) -> usize {
     let mut app = support::headless_app(Duration::ZERO, None);
     capture::begin(&mut app).expect("a graphics device");
     let canvas = capture::canvas(&mut app, SIZE);
     let area = Area {
         shape: Shape::Rectangle { min_m: [-60.0, -290.0], max_m: [60.0, -230.0] },
         density_per_ha: 30.0,
-        stock: vec![Stock { species: "fir".into(), age_years: 80.0, age_spread_years: 8.0, ..default() }],
+        stock: vec![Stock { species: species.into(), age_years: 80.0, age_spread_years: 8.0, ..default() }],
         ..default()
     };
     let plan = ForestPlan { seed: 3, areas: vec![area], ..default() };
     let plan = app.world_mut().resource_mut::<Assets<ForestPlan>>().add(plan);
     let world = app.world_mut();
+    world.insert_resource(season);
     world.insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
     world.insert_resource(GlobalAmbientLight { brightness: 2000.0, ..default() });
     // The trees themselves, and not their lower levels.
@@ -51,9 +52,13 @@ fn covered(settings: ForestSettings) -> usize {
 fn cards_cover_as_much_as_the_trees_that_they_stand_for() {
     let near = ForestSettings { trees_to_m: 400.0, far_to_m: 0.0, trees_per_frame: 1000, ..default() };
     let far = ForestSettings { trees_to_m: 0.0, far_to_m: 400.0, ..default() };
-    let (trees, cards) = (covered(near), covered(far));
-    assert!(trees > 1500, "{trees} pixels");
-    let ratio = cards as f64 / trees as f64;
-    assert!((0.9..1.1).contains(&ratio), "cards cover {cards} pixels, trees {trees}");
-    println!("cards over trees: {ratio:.3}");
+    for (species, season, least) in
+        [("fir", Season::SUMMER, 1500), ("oak", Season::SUMMER, 1500), ("oak", Season::WINTER, 500)]
+    {
+        let [trees, cards] = [&near, &far].map(|settings| covered(settings.clone(), species, season));
+        assert!(trees > least, "{species}, {season:?}: {trees} pixels");
+        let ratio = cards as f64 / trees as f64;
+        println!("{species}, {season:?}: cards over trees {ratio:.3}");
+        assert!((0.9..1.1).contains(&ratio), "{species}, {season:?}: cards cover {cards} pixels, trees {trees}");
+    }
 }

@@ -8,9 +8,10 @@
 //! them surround any direction ([`views_towards`]).
 //!
 //! What a shader does, its eye in the direction `to_eye` (tree-local, from [`ViewFrame::centre`]) and `point` any place on
-//! a rectangle that faces the eye: it draws lots for one of the three views, by weight, and for whether there is a tree, by
-//! the view's alpha; [`ViewFrame::place_in`] is where the point lies on the tile, 0 to 1. To add up the three alphas instead
-//! and to test the sum against a half would thin out what is sparse and thicken what is dense.
+//! a rectangle that faces the eye: it draws lots for one of the three views, by weight; [`ViewFrame::place_in`] is where the
+//! point lies on the tile, 0 to 1. There is a tree where the view's outline is above a half, as long as texels are as large
+//! as pixels: stems are lines then. Where pixels are larger, a lot is drawn for that as well. To add up the three outlines
+//! instead and to test the sum against a half would thin out what is sparse and thicken what is dense.
 
 use bevy::math::{UVec2, Vec2, Vec3};
 

@@ -116,3 +116,20 @@ pub(super) fn bake_far_looks(
         false
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_views_of_a_species_fit_a_texture_of_any_device_with_storage_buffers() {
+        let species = Species::default();
+        let textures = paint(&species);
+        let model = TreeModel::bake(&species, 3.0, 1);
+        let scenes: Vec<Scene> = (0..MOST_TREES).map(|_| Scene::new(&species, &model, &textures)).collect();
+        let atlas = ViewAtlas::bake(&scenes, &LevelSettings::default().views);
+        assert!(atlas.has_bare, "it sheds its leaves: most views that there are");
+        // `maxTextureDimension2D` of WebGPU.
+        assert!(atlas.outline.width.max(atlas.outline.height) <= 8192, "{:?}", atlas.outline.height);
+    }
+}

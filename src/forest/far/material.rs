@@ -68,7 +68,7 @@ struct ViewsUniform {
     translucency: f32,
     blocks: f32,
     first_bare: f32,
-    texel_m: f32,
+    outline_texels: Vec2,
     /// Gain and class of each tree's [`Lean`].
     leans: [Vec4; MOST_TREES as usize],
 }
@@ -83,8 +83,8 @@ pub(super) struct FarViews {
     has_bare: bool,
     blocks: u32,
     across: u32,
-    /// Width of a texel of the outline, m.
-    texel_m: f32,
+    /// Width and height of a view's outline, texels.
+    outline_texels: Vec2,
     /// How each tree leans.
     leans: Vec<Lean>,
     /// The colour of the leaves.
@@ -104,7 +104,7 @@ impl FarViews {
             has_bare: atlas.has_bare,
             blocks: atlas.blocks(),
             across: atlas.across,
-            texel_m: 2.0 * atlas.frame.radius_m * atlas.across as f32 / atlas.outline.width.max(1) as f32,
+            outline_texels: (atlas.view_texels * atlas.outline.width / atlas.colour.width).as_vec2(),
             leans,
             summer,
         }
@@ -143,7 +143,7 @@ pub(super) fn far_material(
                 translucency: species.foliage.translucency,
                 blocks: views.blocks as f32,
                 first_bare: if views.has_bare { views.trees as f32 } else { 0.0 },
-                texel_m: views.texel_m,
+                outline_texels: views.outline_texels,
                 leans: std::array::from_fn(|tree| {
                     let Lean { gain, class } = views.leans.get(tree).copied().unwrap_or_default();
                     Vec4::new(gain, class, 0.0, 0.0)

@@ -14,8 +14,8 @@ struct Views {
     // trees are evergreen.
     blocks: f32,
     first_bare: f32,
-    // Width of a texel of the outlines, m.
-    texel_m: f32,
+    // Width and height of a view's outline, texels.
+    outline_texels: vec2<f32>,
     // Gain and class of each tree's lean: `lod/lean.rs`.
     leans: array<vec4<f32>, 4>,
 }
@@ -61,11 +61,6 @@ fn view_direction(place: vec2<f32>) -> vec3<f32> {
     let x = 0.5 * (p.x + p.y);
     let z = 0.5 * (p.x - p.y);
     return normalize(vec3(x, 1.0 - abs(x) - abs(z), z));
-}
-
-// A way across a tile, of a way past the tree.
-fn way_on_tile(basis: Basis, way: vec3<f32>) -> vec2<f32> {
-    return 0.5 * vec2(dot(way, basis.right), -dot(way, basis.up)) / half_m(basis);
 }
 
 struct Three {
@@ -117,13 +112,13 @@ fn lot(place_m: vec2<f32>, pixel_m: f32) -> f32 {
 const LINE: f32 = 0.5;
 const TWIG_LINE: f32 = 0.4;
 
-// A place in the atlas, with its derivatives.
+// A place in the atlas.
 struct Spot {
     // Whether there is anything of the tree.
     is_there: bool,
     uv: vec2<f32>,
-    uv_x: vec2<f32>,
-    uv_y: vec2<f32>,
+    // The mip in which to look for its colour.
+    mip: f32,
 }
 
 // What is seen there.
@@ -145,7 +140,7 @@ fn spot_at(tree: f32, place: vec2<f32>, point: vec3<f32>, has_leaves: bool) -> S
     let on_card = vec2(dot(from_centre, facing.right), dot(from_centre, facing.up));
     let pixel_m = max(length(along_x), length(along_y));
     let drawn = lot(on_card, pixel_m);
-    // The lot picks a view, and what of it lies within the view's share is a lot again.
+    // The lot picks a view, and what of it lies within the view's share is a lot again: whether there is anything.
     let three = views_around(place);
     let first = three.weights.x;
     let second = first + three.weights.y;
@@ -159,26 +154,29 @@ fn spot_at(tree: f32, place: vec2<f32>, point: vec3<f32>, has_leaves: bool) -> S
         start = first;
     }
     let weight = select(select(three.weights.z, three.weights.y, drawn < second), first, drawn < first);
-    // Where texels are as large as pixels, an outline is a line, and no lot says whether there is anything.
-    let clarity = saturate(2.0 - pixel_m / views.texel_m);
+    // But where texels are as large as pixels, the outline itself says so.
+    let clarity = saturate(1.0 - mip);
     let line = select(TWIG_LINE, LINE, has_leaves);
     let threshold = mix((drawn - start) / max(weight, 1e-6), line, clarity);
 
     let basis = basis_towards(above_horizon(view_direction(view / (views.across - 1.0))));
     let tiles = views.across * vec2(1.0, views.blocks);
     let block = round(tree) + select(views.first_bare, 0.0, has_leaves);
-    let on_tile = clamp(0.5 + way_on_tile(basis, from_centre), vec2(0.0), vec2(1.0));
+    let half = half_m(basis);
+    let across = vec2(dot(from_centre, basis.right), -dot(from_centre, basis.up));
+    let on_tile = clamp(0.5 + 0.5 * across / half, vec2(0.0), vec2(1.0));
     let uv = (view + vec2(0.0, views.across * block) + on_tile) / tiles;
-    // Neighbours may have drawn other views: the derivatives are those on this one.
-    let uv_x = way_on_tile(basis, along_x) / tiles;
-    let uv_y = way_on_tile(basis, along_y) / tiles;
-    let outline = textureSampleGrad(outlines, views_sampler, uv, uv_x, uv_y).r;
-    return Spot(outline > threshold, uv, uv_x, uv_y);
+    // Neighbours may have drawn other views: no derivatives of this place say how large a pixel is on it.
+    let texel_m = 2.0 * half / views.outline_texels;
+    let mip = max(log2(pixel_m / min(texel_m.x, texel_m.y)), 0.0);
+    let outline = textureSampleLevel(outlines, views_sampler, uv, mip).r;
+    // Of colours, half as large, one mip is enough: a lot picks that, too.
+    return Spot(outline > threshold, uv, floor(max(mip - 1.0, 0.0) + fract(16.0 * drawn)));
 }
 
 fn seen_at(spot: Spot) -> Seen {
-    let colour = textureSampleGrad(colours, views_sampler, spot.uv, spot.uv_x, spot.uv_y);
-    let surface = textureSampleGrad(surfaces, views_sampler, spot.uv, spot.uv_x, spot.uv_y);
+    let colour = textureSampleLevel(colours, views_sampler, spot.uv, spot.mip);
+    let surface = textureSampleLevel(surfaces, views_sampler, spot.uv, spot.mip);
     return Seen(colour.rgb, 2.0 * surface.rgb - 1.0, surface.a);
 }
 
