@@ -13,17 +13,19 @@ use bevy_windwood::{
 use std::time::Duration;
 use support::capture;
 
-const SIZE: (u32, u32) = (320, 200);
+/// Where firs are 35 pixels tall, and twice that.
+const SMALL: (u32, u32) = (320, 200);
+const LARGE: (u32, u32) = (640, 400);
 
-/// Pixels that trees cover of a picture of the same small wood of a species, 250 m away, drawn near or far.
-fn covered(settings: ForestSettings, species: &str, season: Season) -> usize {
+/// Pixels that trees cover of a picture of the same small wood of mature trees, 250 m away, drawn near or far.
+fn covered(size: (u32, u32), settings: ForestSettings, (species, mature_years): (&str, f32), season: Season) -> usize {
     let mut app = support::headless_app(Duration::ZERO, None);
     capture::begin(&mut app).expect("a graphics device");
-    let canvas = capture::canvas(&mut app, SIZE);
+    let canvas = capture::canvas(&mut app, size);
     let area = Area {
         shape: Shape::Rectangle { min_m: [-60.0, -290.0], max_m: [60.0, -230.0] },
         density_per_ha: 30.0,
-        stock: vec![Stock { species: species.into(), age_years: 80.0, age_spread_years: 8.0, ..default() }],
+        stock: vec![Stock { species: species.into(), age_years: mature_years, age_spread_years: 8.0, ..default() }],
         ..default()
     };
     let plan = ForestPlan { seed: 3, areas: vec![area], ..default() };
@@ -44,7 +46,7 @@ fn covered(settings: ForestSettings, species: &str, season: Season) -> usize {
     assert!(ready, "the wood did not come about");
     // Meshes and pipelines of what has come last take frames of their own.
     (0..6).for_each(|_| capture::step(&mut app));
-    let picture = capture::capture(&mut app, &canvas, SIZE).expect("a picture");
+    let picture = capture::capture(&mut app, &canvas, size).expect("a picture");
     picture.pixels().filter(|pixel| !(pixel.0[0] > 200 && pixel.0[1] < 60 && pixel.0[2] > 200)).count()
 }
 
@@ -52,13 +54,18 @@ fn covered(settings: ForestSettings, species: &str, season: Season) -> usize {
 fn cards_cover_as_much_as_the_trees_that_they_stand_for() {
     let near = ForestSettings { trees_to_m: 400.0, far_to_m: 0.0, trees_per_frame: 1000, ..default() };
     let far = ForestSettings { trees_to_m: 0.0, far_to_m: 400.0, ..default() };
-    for (species, season, least) in
-        [("fir", Season::SUMMER, 1500), ("oak", Season::SUMMER, 1500), ("oak", Season::WINTER, 500)]
-    {
-        let [trees, cards] = [&near, &far].map(|settings| covered(settings.clone(), species, season));
-        assert!(trees > least, "{species}, {season:?}: {trees} pixels");
+    // Cards are pictures of mature trees: younger ones have thinner wood, which shows in winter.
+    let [fir, oak] = [("fir", 80.0), ("oak", 120.0)];
+    for (size, kind, season, least) in [
+        (SMALL, fir, Season::SUMMER, 1500),
+        (LARGE, fir, Season::SUMMER, 6000),
+        (LARGE, oak, Season::SUMMER, 10_000),
+        (LARGE, oak, Season::WINTER, 4000),
+    ] {
+        let [trees, cards] = [&near, &far].map(|settings| covered(size, settings.clone(), kind, season));
+        assert!(trees > least, "{kind:?}, {season:?}: {trees} pixels");
         let ratio = cards as f64 / trees as f64;
-        println!("{species}, {season:?}: cards over trees {ratio:.3}");
-        assert!((0.9..1.1).contains(&ratio), "{species}, {season:?}: cards cover {cards} pixels, trees {trees}");
+        println!("{size:?}, {kind:?}, {season:?}: cards over trees {ratio:.3}");
+        assert!((0.9..1.1).contains(&ratio), "{kind:?}, {season:?}: cards cover {cards} pixels, trees {trees}");
     }
 }

@@ -154,10 +154,6 @@ fn spot_at(tree: f32, place: vec2<f32>, point: vec3<f32>, has_leaves: bool) -> S
         start = first;
     }
     let weight = select(select(three.weights.z, three.weights.y, drawn < second), first, drawn < first);
-    // But where texels are as large as pixels, the outline itself says so.
-    let clarity = saturate(1.0 - mip);
-    let line = select(TWIG_LINE, LINE, has_leaves);
-    let threshold = mix((drawn - start) / max(weight, 1e-6), line, clarity);
 
     let basis = basis_towards(above_horizon(view_direction(view / (views.across - 1.0))));
     let tiles = views.across * vec2(1.0, views.blocks);
@@ -169,6 +165,9 @@ fn spot_at(tree: f32, place: vec2<f32>, point: vec3<f32>, has_leaves: bool) -> S
     // Neighbours may have drawn other views: no derivatives of this place say how large a pixel is on it.
     let texel_m = 2.0 * half / views.outline_texels;
     let mip = max(log2(pixel_m / min(texel_m.x, texel_m.y)), 0.0);
+    // Where texels are as large as pixels, the outline itself says whether there is anything; else the lot does.
+    let line = select(TWIG_LINE, LINE, has_leaves);
+    let threshold = mix((drawn - start) / max(weight, 1e-6), line, saturate(1.0 - mip));
     let outline = textureSampleLevel(outlines, views_sampler, uv, mip).r;
     // Of colours, half as large, one mip is enough: a lot picks that, too.
     return Spot(outline > threshold, uv, floor(max(mip - 1.0, 0.0) + fract(16.0 * drawn)));
