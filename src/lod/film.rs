@@ -5,7 +5,7 @@
 
 use bevy::math::Vec3;
 
-use crate::texture::{HALF_A_STEP, MASK_CUT_OFF, Texels, TextureData, byte, colour_bytes, linear_bytes};
+use crate::texture::{HALF_A_STEP, MASK_CUT_OFF, Texels, TextureData, colour_bytes, linear_bytes};
 
 /// How much a texel's coverage is mixed with that of the next coarser mip. The few rays of a texel make few steps of
 /// coverage; this makes steps between them, and the outline a little smoother.
@@ -140,12 +140,7 @@ impl Film {
         (colour / cover.max(1e-6)).to_array()
     }
 
-    /// Share of the rays of each texel that hit something.
-    pub(super) fn covers(&self) -> Vec<u8> {
-        self.texels.iter().map(|texel| byte(texel.cover)).collect()
-    }
-
-    pub(super) fn halved(&self) -> Self {
+    fn halved(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let at = |x: usize, y: usize| &self.texels[y.min(self.height - 1) * self.width + x.min(self.width - 1)];
         let texel = |index: usize| {

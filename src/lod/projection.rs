@@ -90,6 +90,11 @@ impl<'a> Projection<'a> {
         }
     }
 
+    /// Whether the ray of a column and row saw anything.
+    pub(super) fn hits(&self, x: usize, y: usize) -> bool {
+        self.nearest[y * self.rays[0] + x].depth < f32::INFINITY
+    }
+
     /// What the ray of a column and row saw.
     pub(super) fn sample(&self, x: usize, y: usize) -> Option<Sample> {
         let seen = self.nearest[y * self.rays[0] + x];

@@ -289,3 +289,22 @@ fn a_picture_leans_where_the_tree_does() {
     model.beams.clear();
     assert_eq!(Lean::of(&Scene::new(&species, &model, &textures), &model), Lean::default());
 }
+
+#[test]
+fn an_outline_has_the_coverage_of_its_colours() {
+    let (species, model, textures) = planted("birch", 0.5);
+    for rays in [1, 2] {
+        let settings = ViewSettings { rays, ..small().views };
+        let atlas = ViewAtlas::bake(&[Scene::new(&species, &model, &textures)], &settings);
+        let (fine, coarse) = (&atlas.outline, &atlas.colour);
+        assert_eq!((fine.width, fine.height), (2 * coarse.width, 2 * coarse.height));
+        assert_eq!(fine.mips.len(), coarse.mips.len() + 1);
+        let (across, width) = (fine.width as usize, coarse.width as usize);
+        for (index, texel) in coarse.mips[0].chunks_exact(4).enumerate() {
+            let first = 2 * (index / width) * across + 2 * (index % width);
+            let four = [0, 1, across, across + 1].map(|step| f32::from(fine.mips[0][first + step]));
+            let mean = four.iter().sum::<f32>() / 4.0;
+            assert!((mean - f32::from(texel[3])).abs() <= 1.0, "{rays} {index}: {mean} for {}", texel[3]);
+        }
+    }
+}

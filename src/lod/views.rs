@@ -22,7 +22,7 @@ use super::{
     scene::{Scene, Sight},
     settings::ViewSettings,
 };
-use crate::texture::{Texels, TextureData};
+use crate::texture::{Texels, TextureData, byte};
 
 /// Tiles have at least so many texels each way in the coarsest mip.
 const LEAST_TILE: usize = 2;
@@ -170,9 +170,9 @@ impl ViewAtlas {
             surface: TextureData::empty(width, Texels::Linear),
         };
         for (&sight, scene) in sights.iter().flat_map(|sight| scenes.iter().map(move |scene| (sight, scene))) {
-            let film = expose(scene, sight, settings, tile, &frame);
-            let Developed { colour, surface } = film.halved().developed(tile, LEAST_TILE, Alpha::Share);
-            atlas.outline.add_below(&outline(&film, &colour));
+            let (film, covers) = expose(scene, sight, settings, tile, &frame);
+            let Developed { colour, surface } = film.developed(tile, LEAST_TILE, Alpha::Share);
+            atlas.outline.add_below(&outline(covers, &colour));
             atlas.colour.add_below(&colour);
             atlas.surface.add_below(&surface);
         }
@@ -206,25 +206,42 @@ impl ViewAtlas {
     }
 }
 
-/// All views of a tree, in texels of the outline.
-fn expose(scene: &Scene, sight: Sight, settings: &ViewSettings, tile: [usize; 2], frame: &ViewFrame) -> Film {
-    let (across, per_texel) = (settings.across, settings.rays as usize);
-    let tile = tile.map(|texels| texels * FINER);
+/// All views of a tree, and what share of each texel of their outline is covered.
+fn expose(
+    scene: &Scene,
+    sight: Sight,
+    settings: &ViewSettings,
+    tile: [usize; 2],
+    frame: &ViewFrame,
+) -> (Film, Vec<u8>) {
+    let (across, per_outline) = (settings.across, settings.rays as usize);
+    let per_texel = FINER * per_outline;
     let [width, height] = tile.map(|texels| across as usize * texels);
+    let rays = tile.map(|texels| texels * per_texel);
     let mut film = Film::new(width, height);
-    let mut projection = Projection::new(scene, tile.map(|texels| texels * per_texel));
+    let mut hits = vec![0_u8; FINER * width * FINER * height];
+    let mut projection = Projection::new(scene, rays);
     for (row, column) in (0..across).flat_map(|row| (0..across).map(move |column| (row, column))) {
         let basis = ViewBasis::of_view(UVec2::new(column, row), across);
         projection.look(&basis, frame.centre, frame.half_m(&basis), sight);
         let corner = [column as usize * tile[0], row as usize * tile[1]];
         film.record(corner, tile, per_texel, |x, y| projection.sample(x, y));
+        for y in 0..rays[1] {
+            let first = (FINER * corner[1] + y / per_outline) * FINER * width + FINER * corner[0];
+            for x in 0..rays[0] {
+                hits[first + x / per_outline] += u8::from(projection.hits(x, y));
+            }
+        }
     }
-    film
+    let whole = (per_outline * per_outline) as f32;
+    hits.iter_mut().for_each(|hits| *hits = byte(f32::from(*hits) / whole));
+    (film, hits)
 }
 
-/// What a film covers. From its second mip on that is the alpha of the colours, which were developed at half its size.
-fn outline(film: &Film, colour: &TextureData) -> TextureData {
+/// The texture of an outline. From its second mip on that is the alpha of the colours.
+fn outline(covers: Vec<u8>, colour: &TextureData) -> TextureData {
     let coarser = colour.mips.iter().map(|mip| mip.iter().skip(3).step_by(4).copied().collect());
-    let mips = std::iter::once(film.covers()).chain(coarser).collect();
-    TextureData { width: film.width as u32, height: film.height as u32, mips, texels: Texels::Share }
+    let mips = std::iter::once(covers).chain(coarser).collect();
+    let [width, height] = [colour.width, colour.height].map(|texels| texels * FINER as u32);
+    TextureData { width, height, mips, texels: Texels::Share }
 }
