@@ -1,6 +1,7 @@
 //! What the forest may be told on its command line.
 
 use crate::arguments::{in_range, seconds, size, wind_speed};
+use bevy_windwood::tree::Season;
 use clap::{Parser, ValueEnum};
 use std::path::PathBuf;
 
@@ -28,7 +29,7 @@ pub struct Options {
     #[arg(long, default_value_t = 10.0, value_parser = wind_speed)]
     pub wind: f32,
     /// The time of the year: 0 midwinter, 0.34 spring, 0.55 summer, 0.81 autumn.
-    #[arg(long, default_value_t = 0.55, value_parser = year)]
+    #[arg(long, default_value_t = Season::SUMMER.year, value_parser = year)]
     pub year: f32,
     /// Where to look from.
     #[arg(long, value_enum, default_value_t = View::Hillside)]

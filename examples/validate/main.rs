@@ -23,6 +23,7 @@ mod trees;
 #[path = "../support/walk.rs"]
 mod walk;
 
+use bevy_windwood::tree::Season;
 use clap::{Parser, ValueEnum};
 use std::{path::PathBuf, process::ExitCode};
 use support::capture;
@@ -73,7 +74,7 @@ struct Options {
     #[arg(long)]
     species: Option<String>,
     /// `levels`: the time of the year, 0 to 1: midwinter is 0.
-    #[arg(long, default_value_t = 0.55)]
+    #[arg(long, default_value_t = Season::SUMMER.year)]
     year: f32,
     /// Folder for charts and pictures.
     #[arg(long, default_value = "out")]
