@@ -82,17 +82,21 @@ pub(super) fn cut(species: &Species, painting: bool, models: Vec<TreeModel>, sty
     // A painter's crown has few parts, each of which is seen: none of them may go.
     let painted = matches!(species.growth, Growth::Gardner(_) | Growth::Impressionist(_));
     let leaf_share = |share| if painted { 1.0 } else { share };
-    let thinned = |part: &Reduction| Reduction { leaf_share: leaf_share(part.leaf_share), ..*part };
-    let reductions: Vec<Reduction> = settings.reductions.iter().map(thinned).collect();
+    let least_radius_m = |model: &TreeModel, most_m| match species.phenology.evergreen {
+        true => most_m,
+        false => bearable_radius_m(&model.skeleton, most_m, LEAST_BARE),
+    };
+    let reductions = |model: &TreeModel| -> Vec<Reduction> {
+        let bearable = |part: &Reduction| Reduction {
+            least_radius_m: least_radius_m(model, part.least_radius_m),
+            leaf_share: leaf_share(part.leaf_share),
+        };
+        settings.reductions.iter().map(bearable).collect()
+    };
     let levels = |model: TreeModel| match (style, &textures) {
         (LevelStyle::Paper, Some(textures)) => paper_levels(species, model, textures, &settings),
-        (LevelStyle::Thinned, _) if species.phenology.evergreen => thinned_levels(model, &reductions),
         (LevelStyle::Thinned, _) => {
-            let bare = |part: &Reduction| Reduction {
-                least_radius_m: bearable_radius_m(&model.skeleton, part.least_radius_m, LEAST_BARE),
-                ..*part
-            };
-            let reductions: Vec<Reduction> = reductions.iter().map(bare).collect();
+            let reductions = reductions(&model);
             thinned_levels(model, &reductions)
         }
         (LevelStyle::Full | LevelStyle::Paper, _) => vec![full_level(model, Cloth::Bark)],
