@@ -1,6 +1,10 @@
 //! What a frame, a question and a step of the viewer cost in forests of ten thousand trees to a million.
 
-use bevy::math::{IVec2, Mat4, Vec2, Vec3, primitives::ViewFrustum};
+use bevy::{
+    math::{IVec2, Vec2, Vec3, proj::perspective_infinite_reverse},
+    prelude::Transform,
+    shape::ViewFrustum,
+};
 use bevy_windwood::{
     cells::{Cell, CellLevels, CellStore, CellStream, Orders, StreamSettings, Sun, TreeExtent, Trunk, View, Viewpoint},
     lod::{Lens, LevelDistances},
@@ -44,8 +48,8 @@ fn view(frame: u32, distance_m: f32) -> View {
     let angle = frame as f32 * STEP_M / 1000.0;
     let eye_m = Vec3::new(1000.0 * angle.cos(), 2.0, 1000.0 * angle.sin());
     let forward = Vec3::new((5.0 * angle).sin(), -0.05, (5.0 * angle).cos());
-    let clip_from_world =
-        Mat4::perspective_infinite_reverse_rh(0.785, 16.0 / 9.0, 0.1) * Mat4::look_to_rh(eye_m, forward, Vec3::Y);
+    let clip_from_world = perspective_infinite_reverse(0.785, 16.0 / 9.0, 0.1)
+        * Transform::from_translation(eye_m).looking_to(forward, Vec3::Y).to_matrix().inverse();
     let planes = ViewFrustum::from_clip_from_world(&clip_from_world).half_spaces.map(|space| space.normal_d());
     let sun = Sun { direction: Vec3::new(1.0, -0.8, 0.4), shadow_distance_m: 300.0, lowest_m: 0.0, longest_m: 500.0 };
     View { planes, eye_m, distance_m, sun: Some(sun) }

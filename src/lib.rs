@@ -50,6 +50,8 @@ pub mod fire;
 pub mod forest;
 pub mod grass;
 pub mod lod;
+#[cfg(feature = "render")]
+mod render;
 pub mod scatter;
 pub mod sway;
 pub mod terrain;

@@ -8,6 +8,7 @@ use bevy::{
     render::render_resource::{
         Extent3d, RenderPipelineDescriptor, SpecializedMeshPipelineError, TextureDimension, TextureFormat,
     },
+    shader::ShaderDefVal,
     utils::default,
 };
 
@@ -48,6 +49,17 @@ pub(crate) fn lay_out(
     descriptor.vertex.buffers = vec![layout.0.get_layout(attributes)?];
     define(descriptor, names);
     Ok(())
+}
+
+/// Passes constants to the vertex stage and, where there is one, the fragment stage: `constants::NAME` of the shaders.
+pub(crate) fn pass_constants(descriptor: &mut RenderPipelineDescriptor, constants: &[(&'static str, u32)]) {
+    for &(name, value) in constants {
+        let define = ShaderDefVal::UInt(name.into(), value);
+        descriptor.vertex.shader_defs.push(define.clone());
+        if let Some(fragment) = &mut descriptor.fragment {
+            fragment.shader_defs.push(define);
+        }
+    }
 }
 
 /// Defines names for the vertex stage and, where there is one, the fragment stage.

@@ -53,6 +53,7 @@ fn read_motion(@builtin(global_invocation_id) id: vec3<u32>) {
 ";
 
 #[derive(Resource, ExtractResource, Clone)]
+#[extract_app(RenderApp)]
 struct Probe {
     read: Handle<ShaderBuffer>,
     shader: Handle<Shader>,

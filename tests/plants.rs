@@ -147,10 +147,10 @@ fn constant(shader: &str, name: &str) -> Vec<f32> {
 
 #[test]
 fn the_shaders_have_the_constants_of_the_code() {
-    let blade = include_str!("../src/grass/shaders/blade.wgsl");
+    let blade = include_str!("../src/grass/shaders/blade.wesl");
     assert_eq!(constant(blade, "LINKS"), [spine::LINKS as f32]);
     assert_eq!(constant(blade, "TIP_ANGLE_LIMIT_RAD"), [spine::TIP_ANGLE_LIMIT_RAD]);
     assert_eq!(constant(blade, "ANGLE_LIMIT_RAD"), [spine::ANGLE_LIMIT_RAD]);
-    let fire = include_str!("../src/fire/shaders/fire.wgsl");
+    let fire = include_str!("../src/fire/shaders/fire.wesl");
     assert_eq!(constant(fire, "WEIGHTS"), flicker::WEIGHTS);
 }

@@ -41,8 +41,7 @@ const TABLE_HEIGHT_M: f32 = 10.0;
 /// A blade is three rows: root and length; azimuth, lean, droop; a wind that bends it and a place where the tables' wind is
 /// asked for, both as (x, z). What is written is its joints, and that wind.
 const BEND_SHADER: &str = "
-#import bevy_windwood::blade::{Blade, LINKS, joint_at, tip_bend}
-#import bevy_windwood::wind::velocity_at
+import bevy_windwood::{grass::shaders::blade::{Blade, LINKS, joint_at, tip_bend}, render::shaders::wind::velocity_at};
 @group(0) @binding(0) var<storage, read> blades: array<vec4<f32>>;
 @group(0) @binding(1) var<storage, read_write> results: array<vec4<f32>>;
 @compute @workgroup_size(64)
@@ -64,6 +63,7 @@ fn bend(@builtin(global_invocation_id) id: vec3<u32>) {
 ";
 
 #[derive(Resource, ExtractResource, Clone)]
+#[extract_app(RenderApp)]
 struct Probe {
     blades: Handle<ShaderBuffer>,
     results: Handle<ShaderBuffer>,
@@ -125,7 +125,7 @@ fn install_probe(app: &mut App, blades: &[Blade], winds: &[Vec2], places: &[Vec2
     let inputs: Vec<Vec4> = inputs.collect();
     let world = app.world_mut();
     let tables = world.resource::<StandTables>().clone();
-    let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wgsl(BEND_SHADER, "bend.wgsl"));
+    let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wesl(BEND_SHADER, "bend.wesl"));
     let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
     let inputs = buffers.add(ShaderBuffer::from(inputs));
     let results = buffers.add(ShaderBuffer::from(vec![Vec4::ZERO; blades.len() * (LINKS + 2)]));

@@ -1,8 +1,8 @@
-//! The shaders say what the code says.
+//! Constants that stand in Rust and in a shader are equal. (Sizes and bits are passed to the shaders as definitions.)
 
 use bevy_windwood::dynamics::pose::{MODE_SHAPE, SLOPE_TIP, TIP_ANGLE_LIMIT};
 
-const BEAM: &str = include_str!("../src/sway/shaders/beam.wgsl");
+const BEAM: &str = include_str!("../src/render/shaders/beam.wesl");
 
 /// The numbers of a constant of the shader.
 fn constant(name: &str) -> Vec<f32> {
@@ -12,7 +12,7 @@ fn constant(name: &str) -> Vec<f32> {
 }
 
 #[test]
-fn the_mode_shape_is_the_same_in_both_languages() {
+fn mode_shape_is_equal_in_rust_and_wesl() {
     for (k, row) in MODE_SHAPE.iter().enumerate() {
         assert_eq!(constant(&format!("MODE_SHAPE_{k}")), row);
     }
@@ -21,42 +21,14 @@ fn the_mode_shape_is_the_same_in_both_languages() {
 }
 
 #[test]
-fn the_cells_that_stand_near_are_a_square_of_one_size_in_both_languages() {
-    let number = |text: &str, name: &str| -> f32 {
-        let line = text.lines().find(|line| line.contains(&format!("const {name}:"))).expect("it is there");
-        line.split('=').nth(1).expect("it has a value").trim().trim_end_matches(';').parse().expect("a number")
-    };
-    let shader = include_str!("../src/forest/far/shaders/far_card.wgsl");
-    assert_eq!(number(include_str!("../src/forest/far/near.rs"), "SIDE"), number(shader, "NEAR_SIDE"));
-    let mesh = include_str!("../src/forest/far/mesh.rs");
-    assert_eq!(number(mesh, "GREATEST_SIZE"), number(shader, "GREATEST_SIZE"));
-    let leans = format!("leans: array<vec4<f32>, {}>", number(mesh, "MOST_TREES"));
-    assert!(include_str!("../src/forest/far/shaders/far.wgsl").contains(&leans), "{leans}");
-}
-
-#[test]
-fn the_times_of_a_leaf_are_the_same_in_both_languages() {
+fn leaf_phenology_constants_are_equal_in_rust_and_wesl() {
     let code = include_str!("../src/tree/phenology.rs");
-    let shader = include_str!("../src/sway/shaders/season.wgsl");
+    let shader = include_str!("../src/render/shaders/season.wesl");
     let value = |text: &str, name: &str| -> f32 {
         let line = text.lines().find(|line| line.starts_with(&format!("const {name}: f32"))).expect("it is there");
         line.split('=').nth(1).expect("it has a value").trim().trim_end_matches(';').parse().expect("a number")
     };
     for name in ["DROP", "YOUTH", "DRIFT", "FARTHEST_M"] {
-        assert_eq!(value(code, name), value(shader, name));
-    }
-}
-
-#[test]
-fn the_ladder_of_ages_and_the_bits_of_a_tag_are_the_same_in_both_languages() {
-    let value = |text: &str, name: &str| -> String {
-        let line = text.lines().find(|line| line.starts_with(&format!("const {name}:"))).expect("it is there");
-        let value = line.split('=').nth(1).expect("it has a value").trim().trim_end_matches(';');
-        value.chars().filter(|c| *c != 'u').collect()
-    };
-    assert_eq!(value(include_str!("../src/sway/detail.rs"), "LADDER"), value(BEAM, "LADDER"));
-    let (code, shader) = (include_str!("../src/sway/dress.rs"), include_str!("../src/sway/shaders/sway.wgsl"));
-    for name in ["FADES_OUT", "FADES_IN", "CARDS_BEHIND"] {
         assert_eq!(value(code, name), value(shader, name));
     }
 }

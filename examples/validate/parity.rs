@@ -35,7 +35,7 @@ const STORM_M_S: f32 = 28.0;
 const MOMENTS_S: [f64; 3] = [3.7, 61.3, 1000.1];
 
 const CARRY_SHADER: &str = "
-#import bevy_windwood::beam::{BeamPose, BeamRow, Frame, TreeRow, carry}
+import bevy_windwood::render::shaders::{beam::carry, instances::{BeamPose, BeamRow, Frame, TreeRow}};
 @group(0) @binding(0) var<storage, read> poses: array<BeamPose>;
 @group(0) @binding(1) var<storage, read> beams: array<BeamRow>;
 @group(0) @binding(2) var<storage, read> trees: array<TreeRow>;
@@ -73,6 +73,7 @@ pub fn run() -> Report {
 }
 
 #[derive(Resource, ExtractResource, Clone)]
+#[extract_app(RenderApp)]
 struct Probe {
     points: Handle<ShaderBuffer>,
     carried: Handle<ShaderBuffer>,
@@ -143,7 +144,7 @@ fn install_probe(app: &mut App, vertices: &[BoundPoint]) -> support::ReadBack {
     let rows: Vec<Vec4> =
         vertices.iter().flat_map(|v| [v.at.extend(v.beam as f32), Vec4::new(v.s, 0.0, 0.0, 0.0)]).collect();
     let world = app.world_mut();
-    let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wgsl(CARRY_SHADER, "carry_points.wgsl"));
+    let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wesl(CARRY_SHADER, "carry_points.wesl"));
     let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
     let points = buffers.add(ShaderBuffer::from(rows));
     let carried = buffers.add(ShaderBuffer::from(vec![Vec4::ZERO; vertices.len()]));

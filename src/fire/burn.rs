@@ -72,7 +72,7 @@ pub(super) fn kindle_fires(mut commands: Commands, fires: Query<(Entity, &Fire),
 }
 
 /// A fire that is taken off an entity goes out.
-pub(super) fn put_out_fire(removed: On<Remove, Fire>, mut commands: Commands) {
+pub(super) fn put_out_fire(removed: On<Remove<Fire>>, mut commands: Commands) {
     if let Ok(mut entity) = commands.get_entity(removed.entity) {
         entity.try_remove::<Burning>();
     }

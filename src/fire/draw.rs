@@ -28,7 +28,7 @@ impl Plugin for FireDrawPlugin {
         if app.get_sub_app(RenderApp).is_none() {
             return;
         }
-        embedded_asset!(app, "shaders/fire.wgsl");
+        embedded_asset!(app, "shaders/fire.wesl");
         let can_draw = resource_exists::<DrawPath>.and_then(resource_exists::<StandTables>);
         app.add_plugins((
             MaterialPlugin::<FireMaterial>::default(),
@@ -119,7 +119,7 @@ fn bind_anew(mut materials: ResMut<Assets<FireMaterial>>) {
 }
 
 fn clear_hearth(
-    removed: On<Remove, Fire>,
+    removed: On<Remove<Fire>>,
     mut commands: Commands,
     children: Query<&Children>,
     lights: Query<Entity, With<FireLight>>,

@@ -1,4 +1,4 @@
-//! The rhythm of a fire: how bright it is at any moment. `shaders/fire.wgsl` has the twin.
+//! The rhythm of a fire: how bright it is at any moment. `shaders/fire.wesl` has the twin.
 //!
 //! A sum of three sines whose frequencies have no simple ratio, so that it does not look periodic; whole cycles in the
 //! period [`FLUTTER_PERIOD_S`] of all our rhythms, so that it never jumps:

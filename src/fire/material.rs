@@ -88,7 +88,7 @@ impl ShelteredFireMaterial {
     }
 }
 
-const FIRE_SHADER: &str = "embedded://bevy_windwood/fire/shaders/fire.wgsl";
+const FIRE_SHADER: &str = "embedded://bevy_windwood/fire/shaders/fire.wesl";
 
 fn specialize_fire(
     descriptor: &mut RenderPipelineDescriptor,

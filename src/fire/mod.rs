@@ -6,7 +6,7 @@
 //!
 //! - [`rhombs`] grows the shape, [`flicker`] its rhythm: plain arithmetic.
 //! - `burn` keeps the last good fire of an entity.
-//! - With the feature `render`, `mesh`, `material` and `draw` draw it (`shaders/fire.wgsl`) and make it give light.
+//! - With the feature `render`, `mesh`, `material` and `draw` draw it (`shaders/fire.wesl`) and make it give light.
 
 mod burn;
 pub mod flicker;

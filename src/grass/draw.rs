@@ -29,8 +29,8 @@ impl Plugin for GrassDrawPlugin {
         if app.get_sub_app(RenderApp).is_none() {
             return;
         }
-        load_shader_library!(app, "shaders/blade.wgsl");
-        embedded_asset!(app, "shaders/grass.wgsl");
+        load_shader_library!(app, "shaders/blade.wesl");
+        embedded_asset!(app, "shaders/grass.wesl");
         let can_draw = resource_exists::<DrawPath>.and_then(resource_exists::<StandTables>);
         app.add_plugins(MaterialPlugin::<GrassMaterial>::default())
             .add_observer(undress_patch)
@@ -116,7 +116,7 @@ fn bind_anew(mut materials: ResMut<Assets<GrassMaterial>>) {
     materials.iter_mut().for_each(drop);
 }
 
-fn undress_patch(removed: On<Remove, GrassPatch>, mut commands: Commands) {
+fn undress_patch(removed: On<Remove<GrassPatch>>, mut commands: Commands) {
     if let Ok(mut entity) = commands.get_entity(removed.entity) {
         entity.try_remove::<(Mowing, Shown, Mesh3d, MeshMaterial3d<GrassMaterial>, MeshMaterial3d<StandardMaterial>)>();
     }

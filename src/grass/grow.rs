@@ -98,7 +98,7 @@ pub(super) fn receive_meadows(mut commands: Commands, mut sowing: Query<(Entity,
 }
 
 /// A patch that is taken off an entity takes its meadow with it.
-pub(super) fn clear_patch(removed: On<Remove, GrassPatch>, mut commands: Commands) {
+pub(super) fn clear_patch(removed: On<Remove<GrassPatch>>, mut commands: Commands) {
     if let Ok(mut entity) = commands.get_entity(removed.entity) {
         entity.try_remove::<(Sowing, Meadow)>();
     }

@@ -92,7 +92,7 @@ pub(super) fn base_material(look: &GrassLook) -> StandardMaterial {
     }
 }
 
-const GRASS_SHADER: &str = "embedded://bevy_windwood/grass/shaders/grass.wgsl";
+const GRASS_SHADER: &str = "embedded://bevy_windwood/grass/shaders/grass.wesl";
 
 impl MaterialExtension for GrassExtension {
     fn vertex_shader() -> ShaderRef {

@@ -6,7 +6,7 @@
 //!
 //! - `settings` is what can be chosen, `blades` lays out tufts, `spine` bends a blade: plain arithmetic.
 //! - `grow` builds in the background what a patch asks for and keeps the last good meadow.
-//! - With the feature `render`, `mesh`, `material` and `draw` draw it (`shaders/blade.wgsl` is the twin of `spine`).
+//! - With the feature `render`, `mesh`, `material` and `draw` draw it (`shaders/blade.wesl` is the twin of `spine`).
 
 pub mod blades;
 mod grow;

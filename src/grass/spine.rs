@@ -1,4 +1,4 @@
-//! How a blade bends: a chain of stiff links, so that its length is kept whatever the wind. `shaders/blade.wgsl` is its twin.
+//! How a blade bends: a chain of stiff links, so that its length is kept whatever the wind. `shaders/blade.wesl` is its twin.
 //!
 //! The wind turns the tip of a blade by an angle that grows with the square of the speed, as drag does, and saturates in
 //! the way of `dynamics::pose` (`U` the horizontal wind, `U_h` the half-bend speed, `L` the limit):

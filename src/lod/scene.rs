@@ -1,6 +1,6 @@
 //! A tree that rays can hit: its triangles in a hierarchy of boxes, and what is seen where one is hit.
 //!
-//! Rays see what the swaying material shows of a tree at rest (`sway.wgsl`, `foliage.wgsl`): the texture's colour times the
+//! Rays see what the swaying material shows of a tree at rest (`tree_vertex.wesl`, `tree_fragment.wesl`): the texture's colour times the
 //! vertices' shade, leaves cut out at the mask's cut-off and lit from both sides by the normal of their vertices, bark
 //! from outside only. The sun and the sky are left to the renderer.
 
@@ -270,7 +270,7 @@ fn triples(indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     indices.chunks_exact(3).map(|triple| [triple[0], triple[1], triple[2]])
 }
 
-/// `shade` of `sway.wgsl`, for wood.
+/// `shade` of `tree_vertex.wesl`, for wood.
 fn wood_corners(wood: &WoodVertices) -> Vec<Corner> {
     let corner = |index: usize| Corner {
         position: Vec3::from_array(wood.positions[index]),
@@ -281,7 +281,7 @@ fn wood_corners(wood: &WoodVertices) -> Vec<Corner> {
     (0..wood.positions.len()).map(corner).collect()
 }
 
-/// `shade` of `sway.wgsl`, for leaves of a tree whose own tint is the middle one.
+/// `shade` of `tree_vertex.wesl`, for leaves of a tree whose own tint is the middle one.
 fn leaf_corners(leaves: &LeafVertices) -> impl Iterator<Item = Corner> {
     (0..leaves.positions.len()).map(|index| {
         let tint = leaves.axis[index][3];

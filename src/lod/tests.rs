@@ -43,9 +43,10 @@ fn tile_of(texture: &TextureData, mip: usize, [left, top]: [usize; 2], [width, h
 
 /// The tile of a view of a tree in a mip of an atlas: colours and surfaces.
 fn view_of(atlas: &ViewAtlas, tree: u32, view: UVec2, mip: usize) -> [Vec<[u8; 4]>; 2] {
-    let size = (atlas.view_texels / (1 << mip)).as_usizevec2();
-    let corner = (view + UVec2::new(0, tree * atlas.across)).as_usizevec2() * size;
-    [&atlas.colour, &atlas.surface].map(|texture| tile_of(texture, mip, corner.to_array(), size.to_array()))
+    let size = atlas.view_texels / (1 << mip);
+    let corner = (view + UVec2::new(0, tree * atlas.across)) * size;
+    let texels = |size: UVec2| size.to_array().map(|texels| texels as usize);
+    [&atlas.colour, &atlas.surface].map(|texture| tile_of(texture, mip, texels(corner), texels(size)))
 }
 
 /// Mean coverage of a tile.
@@ -273,7 +274,7 @@ fn a_picture_leans_where_the_tree_does() {
         let (species, model, textures) = planted(name, 1.0);
         let scene = Scene::new(&species, &model, &textures);
         let lean = Lean::of(&scene, &model);
-        // As `far_card.wgsl` does, in a fresh breeze of 9.4 m/s.
+        // As `impostor_vertex.wesl` does, in a fresh breeze of 9.4 m/s.
         let free = lean.gain * 9.4 * 9.4;
         let sine = free / (1.0 + (free / 1.1_f32.sin()).powi(2)).sqrt();
         let leaning = |p: Vec3| Vec3::new(p.x + p.y * sine, p.y * (1.0 - sine * sine).sqrt(), p.z);

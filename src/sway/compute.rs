@@ -5,6 +5,7 @@
 //! every pass. Measured on software Vulkan, 60 trees at 640x400 with four samples: with the whole chain in the vertex
 //! shader no picture was there after two minutes, this way one (of two or three frames) after 19 s.
 
+use super::rows::CHUNK;
 use bevy::{
     core_pipeline::schedule::camera_driver,
     prelude::*,
@@ -30,10 +31,11 @@ const ACROSS: u32 = 256;
 /// The name of the poses among Bevy's render diagnostics.
 pub const POSES_SPAN: &str = "tree_poses";
 
-const POSE_SHADER: &str = "embedded://bevy_windwood/sway/shaders/pose.wgsl";
+const POSE_SHADER: &str = "embedded://bevy_windwood/render/shaders/pose_pass.wesl";
 
 /// What is to be posed this frame.
 #[derive(Resource, ExtractResource, Clone)]
+#[extract_app(RenderApp)]
 pub(super) struct PoseJob {
     /// Slot A, slot B, beams, trees, chunks, frame, poses.
     pub buffers: [Handle<ShaderBuffer>; 7],
@@ -93,12 +95,16 @@ fn queue_pipelines(mut commands: Commands, assets: Res<AssetServer>, cache: Res<
             layout: vec![layout.clone()],
             shader: assets.load(POSE_SHADER),
             // Materials and this shader import the same tables; here they are in the only group.
-            shader_defs: vec![ShaderDefVal::UInt("MATERIAL_BIND_GROUP".into(), 0)],
+            shader_defs: vec![
+                ShaderDefVal::UInt("MATERIAL_BIND_GROUP".into(), 0),
+                ShaderDefVal::UInt("POSE_WORKGROUP_SIZE".into(), CHUNK),
+                ShaderDefVal::UInt("POSE_WORKGROUPS_ACROSS".into(), ACROSS),
+            ],
             entry_point: Some(entry_point.into()),
             ..default()
         })
     };
-    let (find_tip_angles, ride) = (pipeline("find_tip_angles"), pipeline("ride"));
+    let (find_tip_angles, ride) = (pipeline("find_tip_angles"), pipeline("add_parent_motion"));
     commands.insert_resource(PosePipelines { layout, find_tip_angles, ride });
 }
 

@@ -1,7 +1,7 @@
 //! How much of each tree is drawn: its level of detail by its size on screen.
 //!
 //! Which levels a tree wears follows from its distance to the nearest viewer; where a level fades into the next it wears
-//! both, and the shaders dither between them by the distance to whoever looks (`shaders/level.wgsl`), in the main pass, the
+//! both, and the shaders dither between them by the distance to whoever looks (`render/shaders/cross_fade.wesl`), in the main pass, the
 //! prepass and the shadows alike. So a change of clothes is never seen: the level that goes is all gone by then, the one
 //! that comes has not begun. Only a viewer who leaps sees levels change at once.
 
@@ -69,8 +69,8 @@ const STEP_M: f32 = 0.5;
 /// distance, and no less than a fast one makes between two looks.
 const SLACK_M: [f32; 2] = [1.0, 3.0];
 const SLACK_SHARE: f32 = 0.05;
-/// `LADDER` of `shaders/beam.wgsl`.
-const LADDER: f32 = 1.17;
+/// Models are grown for ages in steps, impostors for any: the heights of a tree and its impostor differ by less than this factor.
+pub(super) const LADDER: f32 = 1.17;
 /// The lens that is assumed where there is no camera.
 const COMMON_LENS: Lens = Lens { fov_rad: std::f32::consts::FRAC_PI_4, picture_px: 1080.0 };
 

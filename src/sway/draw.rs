@@ -103,7 +103,7 @@ pub(super) fn fit_boxes(
         let Ok((_, tree, grown, mut bounds, children)) = trees.get_mut(tree) else { continue };
         let Some(variant) = wardrobe.variant(tree.species.id(), grown.model.id()) else { continue };
         bounds.set_if_neq(variant.bounds);
-        let mut draws = draws.iter_many_mut(children.into_iter().flatten());
+        let mut draws = draws.iter_many_mut(children.into_iter().flatten()).matched();
         while let Some(mut bounds) = draws.fetch_next() {
             bounds.set_if_neq(variant.bounds);
         }

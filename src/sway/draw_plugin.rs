@@ -17,9 +17,11 @@ use super::{
     upload::{StandBuffers, StandTables, upload_frame, upload_winds},
     writes,
 };
-use crate::{schedule::WindwoodSystems, timing::timed, tree::receive_models, viewpoint::give_cameras_viewpoints};
+use crate::{
+    render::load_shaders, schedule::WindwoodSystems, timing::timed, tree::receive_models,
+    viewpoint::give_cameras_viewpoints,
+};
 use bevy::{
-    asset::embedded_asset,
     camera::visibility::VisibilitySystems,
     pbr::MaterialPlugin,
     prelude::*,
@@ -28,7 +30,6 @@ use bevy::{
         batching::gpu_preprocessing::{GpuPreprocessingMode, GpuPreprocessingSupport},
         renderer::RenderDevice,
     },
-    shader::load_shader_library,
 };
 
 /// Draws [`Tree`](crate::tree::Tree)s, posed in the vertex shader. Without a renderer it does nothing but say so.
@@ -40,19 +41,7 @@ impl Plugin for SwayDrawPlugin {
             info!("windwood: there is no renderer; trees move but are not drawn");
             return;
         }
-        load_shader_library!(app, "shaders/beam.wgsl");
-        load_shader_library!(app, "shaders/eye.wgsl");
-        load_shader_library!(app, "shaders/leaf.wgsl");
-        load_shader_library!(app, "shaders/level.wgsl");
-        load_shader_library!(app, "shaders/light.wgsl");
-        load_shader_library!(app, "shaders/season.wgsl");
-        load_shader_library!(app, "shaders/surface.wgsl");
-        load_shader_library!(app, "shaders/written.wgsl");
-        embedded_asset!(app, "shaders/foliage.wgsl");
-        embedded_asset!(app, "shaders/mask.wgsl");
-        load_shader_library!(app, "shaders/wind.wgsl");
-        embedded_asset!(app, "shaders/pose.wgsl");
-        embedded_asset!(app, "shaders/sway.wgsl");
+        load_shaders(app);
         give_cameras_viewpoints(app);
         app.add_plugins((MaterialPlugin::<SwayMaterial>::default(), compute::plugin, writes::plugin, mend::plugin))
             .init_resource::<StandBuffers>()

@@ -99,9 +99,20 @@ impl Dresser<'_, '_> {
 }
 
 /// How the level of a draw fades: bits of its tag.
-const FADES_OUT: u32 = 1 << 18;
-const FADES_IN: u32 = 1 << 19;
-const CARDS_BEHIND: u32 = 1 << 20;
+const FADES_OUT: u32 = 1 << FADES_OUT_BIT;
+const FADES_IN: u32 = 1 << FADES_IN_BIT;
+const CARDS_BEHIND: u32 = 1 << CARDS_BEHIND_BIT;
+/// The layout of a tag, as the shaders read it.
+pub(super) const TAG_LAYOUT: [(&str, u32); 5] = [
+    ("TAG_ROW_BITS", 16),
+    ("TAG_FADES_OUT_BIT", FADES_OUT_BIT),
+    ("TAG_FADES_IN_BIT", FADES_IN_BIT),
+    ("TAG_FADES_TO_IMPOSTOR_BIT", CARDS_BEHIND_BIT),
+    ("TAG_TINT_SHIFT", 24),
+];
+const FADES_OUT_BIT: u32 = 18;
+const FADES_IN_BIT: u32 = 19;
+const CARDS_BEHIND_BIT: u32 = 20;
 
 /// A tree and what it is to wear.
 pub(super) struct Dress<'a> {
@@ -172,7 +183,7 @@ impl Dress<'_> {
     ) {
         let fading = if garment.fades && self.standing.is_some() { fading } else { 0 };
         let row = self.standing.map_or(0, |standing| standing.row);
-        let tag = MeshTag(row | u32::from(level) << 16 | fading | u32::from(self.worn.tint) << 24);
+        let tag = MeshTag::new(row | u32::from(level) << 16 | fading | u32::from(self.worn.tint) << 24);
         if same {
             entity.insert((more, tag));
             return;

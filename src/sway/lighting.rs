@@ -29,7 +29,7 @@ pub struct TreeLights {
 }
 
 impl TreeLights {
-    /// The names that `sway/shaders/light.wgsl` asks for.
+    /// The names that `render/shaders/lighting.wesl` asks for.
     pub(crate) fn names(self) -> &'static [&'static str] {
         match self {
             Self { lighting: TreeLighting::AllLights, .. } => &[],

@@ -1,9 +1,9 @@
 //! The material that poses trees in the vertex shader.
 
-use super::{active::FLUTTER_PERIOD_S, lighting::TreeLights};
+use super::{active::FLUTTER_PERIOD_S, dress::TAG_LAYOUT, lighting::TreeLights};
 use crate::{
     dynamics::leaf::LeafResponse,
-    shading::{define, lay_out},
+    shading::{define, lay_out, pass_constants},
     tree::phenology::Phenology,
 };
 use bevy::{
@@ -130,9 +130,9 @@ impl SeasonUniform {
     }
 }
 
-const FOLIAGE_SHADER: &str = "embedded://bevy_windwood/sway/shaders/foliage.wgsl";
-const MASK_SHADER: &str = "embedded://bevy_windwood/sway/shaders/mask.wgsl";
-const SWAY_SHADER: &str = "embedded://bevy_windwood/sway/shaders/sway.wgsl";
+const FOLIAGE_SHADER: &str = "embedded://bevy_windwood/render/shaders/tree_fragment.wesl";
+const MASK_SHADER: &str = "embedded://bevy_windwood/render/shaders/tree_prepass.wesl";
+const SWAY_SHADER: &str = "embedded://bevy_windwood/render/shaders/tree_vertex.wesl";
 
 impl MaterialExtension for SwayExtension {
     fn fragment_shader() -> ShaderRef {
@@ -188,6 +188,7 @@ impl MaterialExtension for SwayExtension {
         };
         define(descriptor, own);
         define(descriptor, key.bind_group_data.names());
+        pass_constants(descriptor, &TAG_LAYOUT);
         lay_out(descriptor, layout, &attributes, &["VERTEX_COLORS", "VERTEX_TANGENTS", "VISIBILITY_RANGE_DITHER"])
     }
 }

@@ -1,4 +1,4 @@
-//! The tables as the shaders read them. Each layout here has its twin in `shaders/beam.wgsl` or `shaders/wind.wgsl`.
+//! The tables as the shaders read them. Each layout here has its twin in `render/shaders/instances.wesl` or `wind.wesl`.
 
 use crate::{dynamics::pose::BeamDynamics, sway::response::WindResponse};
 use bytemuck::{Pod, Zeroable};
@@ -57,7 +57,9 @@ pub(super) struct FrameRow {
     pub cards_from_m: f32,
     /// Over this share of a distance, to either side, levels fade.
     pub fade: f32,
-    pub padding: [f32; 2],
+    /// Heights of a tree and its impostor differ by less than this factor.
+    pub height_tolerance: f32,
+    pub padding: f32,
 }
 
 /// `TreeRow` of the shader: one tree. Without beams it is a row that nobody has, or a tree that is not posed: at rest.

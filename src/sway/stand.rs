@@ -227,7 +227,7 @@ impl Stand {
 /// Rows that the 16 bits of a tag, and of a chunk of poses, can name.
 const ROW_LIMIT: u32 = 65_535;
 
-pub(super) fn dismiss_tree(removed: On<Remove, Standing>, trees: Query<&Standing>, mut stand: ResMut<Stand>) {
+pub(super) fn dismiss_tree(removed: On<Remove<Standing>>, trees: Query<&Standing>, mut stand: ResMut<Stand>) {
     if let Ok(standing) = trees.get(removed.entity) {
         stand.dismiss(*standing);
     }
@@ -318,7 +318,7 @@ mod tests {
     #[test]
     fn nobody_has_the_poses_of_another() {
         let (mut stand, id) = stand(10_000);
-        let other = AssetId::Uuid { uuid: AssetId::<TreeModel>::INVALID_UUID };
+        let other = AssetId::Uuid { uuid: bevy::asset::uuid::Uuid::from_u128(1) };
         stand.add_model(other, std::iter::repeat_n(BeamRow::default(), 20));
         let trees: Vec<Standing> =
             (0..300).filter_map(|tree| stand.admit(if tree % 3 == 0 { other } else { id })).collect();

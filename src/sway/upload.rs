@@ -4,7 +4,7 @@
 use super::{
     active::{ActiveSway, leaf_clock_s, wrapped_time_s},
     compute::PoseJob,
-    detail::Sight,
+    detail::{LADDER, Sight},
     draw::DrawPath,
     material::SwayMaterial,
     response::WindResponse,
@@ -51,7 +51,7 @@ impl FromWorld for StandBuffers {
     fn from_world(world: &mut World) -> Self {
         let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
         // An empty table is never read; it only has to be there.
-        let mut empty = || buffers.add(ShaderBuffer::with_size(FIRST_BYTES, RenderAssetUsages::RENDER_WORLD));
+        let mut empty = || buffers.add(ShaderBuffer::with_size(FIRST_BYTES as u64, RenderAssetUsages::RENDER_WORLD));
         Self {
             winds: [empty(), empty()],
             beams: empty(),
@@ -143,7 +143,7 @@ impl Uploads<'_> {
     /// Another buffer in place of one.
     fn renew(&mut self, handle: &Handle<ShaderBuffer>, bytes: usize) {
         if let Some(mut buffer) = self.buffers.get_mut(handle) {
-            *buffer = ShaderBuffer::with_size(bytes, RenderAssetUsages::RENDER_WORLD);
+            *buffer = ShaderBuffer::with_size(bytes as u64, RenderAssetUsages::RENDER_WORLD);
         }
     }
 
@@ -174,8 +174,8 @@ pub(super) fn upload_winds(sway: Res<ActiveSway>, path: Res<DrawPath>, mut warne
         if bytes <= limit {
             let handle = uploads.shared.winds[slot].clone();
             if let Some(mut buffer) = uploads.buffers.get_mut(&handle) {
-                let is_resized = buffer.buffer_description.size != bytes;
-                (buffer.buffer_description.size, buffer.data) = (bytes, Some(packed));
+                let is_resized = buffer.buffer_size() != bytes;
+                *buffer = ShaderBuffer::new(packed, RenderAssetUsages::RENDER_WORLD);
                 if is_resized {
                     uploads.shared.stale_materials = 2;
                 }
@@ -226,6 +226,7 @@ pub(super) fn upload_frame(
         level_ends: sight.ladder.ends,
         cards_from_m: sight.ladder.cards_from_m,
         fade: sight.ladder.fade,
+        height_tolerance: LADDER,
         ..frame_row(&sway, &clock, shared, job.chunks)
     };
     uploads.writes.write(&uploads.shared.frame, FIRST_BYTES as u64, 0, bytemuck::bytes_of(&row));

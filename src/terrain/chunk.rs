@@ -113,7 +113,7 @@ impl Seams {
         Self(self.0 | levels.min(COARSEST_NEIGHBOUR) << (4 * edge as u32))
     }
 
-    /// Whether a vertex with that code is drawn: the rule of the vertex shader, `ground.wgsl`.
+    /// Whether a vertex with that code is drawn: the rule of the vertex shader, `ground.wesl`.
     #[must_use]
     pub fn shows(self, gap_code: f32) -> bool {
         let code = gap_code as u32;

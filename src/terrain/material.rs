@@ -89,8 +89,8 @@ pub(super) fn ground_material(look: &GroundLook, detail: Handle<Image>) -> Groun
     }
 }
 
-const SHADER: &str = "embedded://bevy_windwood/terrain/shaders/ground.wgsl";
-const COLOUR_SHADER: &str = "embedded://bevy_windwood/terrain/shaders/ground_colour.wgsl";
+const SHADER: &str = "embedded://bevy_windwood/terrain/shaders/ground.wesl";
+const COLOUR_SHADER: &str = "embedded://bevy_windwood/terrain/shaders/ground_colour.wesl";
 
 impl MaterialExtension for GroundExtension {
     fn vertex_shader() -> ShaderRef {

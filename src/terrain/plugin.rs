@@ -16,8 +16,8 @@ impl Plugin for TerrainDrawPlugin {
         if app.get_sub_app(RenderApp).is_none() {
             return;
         }
-        embedded_asset!(app, "shaders/ground.wgsl");
-        embedded_asset!(app, "shaders/ground_colour.wgsl");
+        embedded_asset!(app, "shaders/ground.wesl");
+        embedded_asset!(app, "shaders/ground_colour.wesl");
         give_cameras_viewpoints(app);
         app.add_plugins(MaterialPlugin::<GroundMaterial>::default())
             .register_type::<TerrainSettings>()

@@ -194,7 +194,7 @@ impl TerrainChunks {
                     Visibility::Hidden,
                     Mesh3d(meshes.add(built.mesh)),
                     MeshMaterial3d(material.clone()),
-                    MeshTag(0),
+                    MeshTag::new(0),
                     built.bounds,
                     NoAutoAabb,
                 ));
@@ -230,7 +230,7 @@ impl TerrainChunks {
             let seams = self.pyramid.seams(*key);
             visibility.set_if_neq(if seams.is_some() { Visibility::Inherited } else { Visibility::Hidden });
             if let Some(seams) = seams {
-                tag.set_if_neq(MeshTag(seams.0));
+                tag.set_if_neq(MeshTag::new(seams.0));
             }
         }
     }

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! An evergreen keeps its size and its colour; its new shoots are young for a while. The twin for drawing is
-//! `sway/shaders/season.wgsl`.
+//! `render/shaders/season.wesl`.
 
 use super::species::{SpeciesError, require, require_colour};
 use bevy::reflect::Reflect;

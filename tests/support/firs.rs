@@ -59,7 +59,7 @@ pub fn draw_firs(limits: WgpuLimits) -> Outcome {
     let picture = photograph(&mut app, &target);
     let posed = rows.map_or(0, |rows| {
         let rows = rows.lock().expect("nobody panics with it").take().expect("the rows come back");
-        // `TreeRow` of `beam.wgsl` has 48 bytes; its number of beams is the tenth of its words.
+        // `TreeRow` of `instances.wesl` has 48 bytes; its number of beams is the tenth of its words.
         rows.chunks_exact(48).filter(|row| row[36..40] != [0; 4]).count()
     });
     let world = app.world_mut();

@@ -57,7 +57,7 @@ pub fn assert_meshes_compile(app: &App) {
 pub fn pipelines_with<'a>(app: &'a App, shader_def: &'static str) -> impl Iterator<Item = &'a CachedPipeline> {
     let has = move |descriptor: &PipelineDescriptor| match descriptor {
         PipelineDescriptor::RenderPipelineDescriptor(it) => it.vertex.shader_defs.contains(&shader_def.into()),
-        PipelineDescriptor::ComputePipelineDescriptor(_) => false,
+        _ => false,
     };
     let cache = app.sub_app(RenderApp).world().resource::<PipelineCache>();
     cache.pipelines().filter(move |pipeline| has(&pipeline.descriptor))

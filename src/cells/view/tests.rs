@@ -1,6 +1,10 @@
 use super::*;
 use crate::cells::store::tests::forest;
-use bevy::math::{Mat4, primitives::ViewFrustum};
+use bevy::{
+    math::{Mat4, proj::perspective_infinite_reverse},
+    prelude::Transform,
+    shape::ViewFrustum,
+};
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 
 const EXTENT: TreeExtent = TreeExtent { height_m: 25.0, reach_m: 6.0 };
@@ -14,12 +18,13 @@ fn random_unit(random: &mut Xoshiro256PlusPlus) -> Vec3 {
 fn random_view(random: &mut Xoshiro256PlusPlus, sun: Option<Sun>) -> (View, Mat4) {
     let mut place = |half_m: f32| random.random_range(-half_m..half_m);
     let eye_m = Vec3::new(place(1500.0), place(60.0) + 40.0, place(1500.0));
-    let clip_from_view = Mat4::perspective_infinite_reverse_rh(
+    let clip_from_view = perspective_infinite_reverse(
         random.random_range(0.2..2.0),
         random.random_range(0.3..3.0),
         random.random_range(0.01..2.0),
     );
-    let view_from_world = Mat4::look_to_rh(eye_m, random_unit(random), random_unit(random));
+    let looking = Transform::from_translation(eye_m).looking_to(random_unit(random), random_unit(random));
+    let view_from_world = looking.to_matrix().inverse();
     let clip_from_world = clip_from_view * view_from_world;
     let planes = ViewFrustum::from_clip_from_world(&clip_from_world).half_spaces.map(|space| space.normal_d());
     let distance_m = random.random_range(50.0..3000.0);

@@ -1,9 +1,12 @@
 //! The material of far trees.
 
-use super::mesh::{ATTRIBUTE_FAR, MOST_TREES};
+use super::{
+    mesh::{ATTRIBUTE_FAR, GREATEST_SIZE, MOST_TREES},
+    near::SIDE,
+};
 use crate::{
     lod::{Lean, ViewAtlas, ViewFrame},
-    shading::{ALL_MIPS, define, image, lay_out},
+    shading::{ALL_MIPS, define, image, lay_out, pass_constants},
     sway::{LitAsTrees, SeasonUniform, StandTables, TreeLights},
     tree::Species,
 };
@@ -164,9 +167,9 @@ impl LitAsTrees for FarExtension {
     }
 }
 
-const CARD_SHADER: &str = "embedded://bevy_windwood/forest/far/shaders/far_card.wgsl";
-const COLOUR_SHADER: &str = "embedded://bevy_windwood/forest/far/shaders/far_colour.wgsl";
-const MASK_SHADER: &str = "embedded://bevy_windwood/forest/far/shaders/far_mask.wgsl";
+const CARD_SHADER: &str = "embedded://bevy_windwood/render/shaders/impostor_vertex.wesl";
+const COLOUR_SHADER: &str = "embedded://bevy_windwood/render/shaders/impostor_fragment.wesl";
+const MASK_SHADER: &str = "embedded://bevy_windwood/render/shaders/impostor_prepass.wesl";
 
 impl MaterialExtension for FarExtension {
     fn vertex_shader() -> ShaderRef {
@@ -195,6 +198,12 @@ impl MaterialExtension for FarExtension {
         // Coordinates and colour carry the place on the tree and the direction to the eye to the fragments.
         let names = ["VERTEX_UVS_A", "VERTEX_UVS_B", "VERTEX_COLORS", "VISIBILITY_RANGE_DITHER"];
         define(descriptor, key.bind_group_data.names());
+        let sizes = [
+            ("MAX_IMPOSTOR_VARIANTS", MOST_TREES),
+            ("MAX_IMPOSTOR_SIZE", GREATEST_SIZE as u32),
+            ("NEAR_MASK_SIDE", SIDE.cast_unsigned()),
+        ];
+        pass_constants(descriptor, &sizes);
         lay_out(descriptor, layout, &attributes, &names)
     }
 }

@@ -16,7 +16,7 @@ pub(super) const ATTRIBUTE_FAR: MeshVertexAttribute =
 pub(super) const MOST_TREES: u32 = 4;
 
 /// The greatest size that fits into a code.
-const GREATEST_SIZE: f32 = 4.0;
+pub(super) const GREATEST_SIZE: f32 = 4.0;
 
 /// A tree of a block.
 #[derive(Clone, Copy, Debug, PartialEq)]

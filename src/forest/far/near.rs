@@ -23,7 +23,7 @@ pub(super) struct NearCells {
 impl FromWorld for NearCells {
     fn from_world(world: &mut World) -> Self {
         let words = [0; HEADER + SIDE as usize];
-        let buffer = ShaderBuffer::new(bytemuck::cast_slice(&words), RenderAssetUsages::RENDER_WORLD);
+        let buffer = ShaderBuffer::new(words.to_vec(), RenderAssetUsages::RENDER_WORLD);
         Self { buffer: world.resource_mut::<Assets<ShaderBuffer>>().add(buffer), words }
     }
 }
@@ -79,7 +79,7 @@ pub(super) fn tell_near_cells(
     }
     near.words = words;
     if let Some(mut buffer) = buffers.get_mut(&near.buffer) {
-        buffer.data = Some(bytemuck::cast_slice(&words).to_vec());
+        *buffer = ShaderBuffer::new(words.to_vec(), RenderAssetUsages::RENDER_WORLD);
     }
 }
 

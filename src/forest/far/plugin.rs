@@ -16,10 +16,7 @@ use crate::{
     sway::{DrawPath, StandTables, TreeLights, relight},
     timing::timed,
 };
-use bevy::{
-    asset::embedded_asset, camera::visibility::VisibilitySystems, pbr::MaterialPlugin, prelude::*, render::RenderApp,
-    shader::load_shader_library,
-};
+use bevy::{camera::visibility::VisibilitySystems, pbr::MaterialPlugin, prelude::*, render::RenderApp};
 
 /// Draws the trees of [`Forest`](crate::forest::Forest)s that are too far to be entities, and hides near ones that nobody
 /// sees. Needs [`SwayDrawPlugin`](crate::sway::SwayDrawPlugin). Without a renderer it only culls.
@@ -38,10 +35,6 @@ impl Plugin for ForestDrawPlugin {
         if app.get_sub_app(RenderApp).is_none() {
             return;
         }
-        load_shader_library!(app, "shaders/far.wgsl");
-        embedded_asset!(app, "shaders/far_card.wgsl");
-        embedded_asset!(app, "shaders/far_colour.wgsl");
-        embedded_asset!(app, "shaders/far_mask.wgsl");
         let can_draw = resource_exists::<DrawPath>.and_then(resource_exists::<StandTables>);
         app.add_plugins(MaterialPlugin::<FarMaterial>::default())
             .init_resource::<NearCells>()

@@ -95,8 +95,8 @@ fn projected_share(
             if whole != 0.0 && shares.iter().all(|&share| share >= 0.0) {
                 let is_there = uvs.is_none_or(|uvs| {
                     let uv: Vec2 = shares.iter().zip(uvs).map(|(&share, uv)| share * uv).sum();
-                    let texel = (uv * side as f32).as_uvec2().min(UVec2::splat(side as u32 - 1)).as_usizevec2();
-                    f32::from(mask[4 * (texel.y * side + texel.x) + 3]) / 255.0 > MASK_CUT_OFF
+                    let texel = (uv * side as f32).as_uvec2().min(UVec2::splat(side as u32 - 1));
+                    f32::from(mask[4 * (texel.y as usize * side + texel.x as usize) + 3]) / 255.0 > MASK_CUT_OFF
                 });
                 *stopped |= is_there;
             }
