@@ -1,24 +1,18 @@
-//! What a frame, a question and a step of the viewer cost in forests of ten thousand trees to a million.
+//! The cost of a query and of a step of the viewer in a forest of a million trees.
 
-use bevy::{
-    math::{IVec2, Vec2, Vec3, proj::perspective_infinite_reverse},
-    prelude::Transform,
-    shape::ViewFrustum,
-};
+use bevy::math::{IVec2, Vec2, Vec3};
 use bevy_windwood::{
-    cells::{Cell, CellLevels, CellStore, CellStream, Orders, StreamSettings, Sun, TreeExtent, Trunk, View, Viewpoint},
-    lod::{Lens, LevelDistances},
+    cells::{Cell, CellStore, CellStream, Orders, StreamSettings, Trunk, ViewerPose},
     scatter::{
         ForestPlan, LevelGround, Planter,
         plan::{Area, Shape},
     },
 };
-use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
+use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 
 /// 20 m/s at 60 frames a second.
 const STEP_M: f32 = 20.0 / 60.0;
-const EXTENT: TreeExtent = TreeExtent { height_m: 25.0, reach_m: 7.0 };
 const TRUNKS: [Trunk; 1] = [Trunk { radius_m: 0.4, top_radius_m: 0.05, height_m: 20.0 }];
 
 /// A square of woodland with so many trees, and its least and greatest cell.
@@ -43,52 +37,14 @@ fn per_tree(store: &CellStore) -> f64 {
     store.bytes() as f64 / store.plants() as f64
 }
 
-/// A camera that goes round the middle of the forest and turns about.
-fn view(frame: u32, distance_m: f32) -> View {
-    let angle = frame as f32 * STEP_M / 1000.0;
-    let eye_m = Vec3::new(1000.0 * angle.cos(), 2.0, 1000.0 * angle.sin());
-    let forward = Vec3::new((5.0 * angle).sin(), -0.05, (5.0 * angle).cos());
-    let clip_from_world = perspective_infinite_reverse(0.785, 16.0 / 9.0, 0.1)
-        * Transform::from_translation(eye_m).looking_to(forward, Vec3::Y).to_matrix().inverse();
-    let planes = ViewFrustum::from_clip_from_world(&clip_from_world).half_spaces.map(|space| space.normal_d());
-    let sun = Sun { direction: Vec3::new(1.0, -0.8, 0.4), shadow_distance_m: 300.0, lowest_m: 0.0, longest_m: 500.0 };
-    View { planes, eye_m, distance_m, sun: Some(sun) }
-}
-
-fn frames(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("frame");
-    let lens = Lens { fov_rad: 0.785, picture_px: 1080.0 };
-    let switches = LevelDistances::default().switches(25.0, lens);
-    for (name, trees, side_m, distance_m) in [
-        ("trees_1e4", 1e4, 10_000.0, 10_000.0),
-        ("trees_1e5", 1e5, 10_000.0, 10_000.0),
-        ("trees_1e6", 1e6, 10_000.0, 10_000.0),
-        ("world_10_km_seen_3_km", 1e6, 10_000.0, 3000.0),
-        ("world_20_km_seen_3_km", 4e6, 20_000.0, 3000.0),
-    ] {
-        let (store, _) = forest(trees, side_m);
-        let (mut seen, mut levels, mut known, mut frame) = (Vec::new(), Vec::new(), CellLevels::default(), 0);
-        group.bench_function(BenchmarkId::new("see_and_choose", name), |bencher| {
-            bencher.iter(|| {
-                frame += 1;
-                store.see(&view(frame, distance_m), EXTENT, &mut seen);
-                known.choose(&seen, &switches, &mut levels);
-                seen.len()
-            });
-        });
-        println!("{} cells seen", seen.len());
-    }
-    group.finish();
-}
-
-fn questions(criterion: &mut Criterion) {
+fn queries(criterion: &mut Criterion) {
     let (store, _) = forest(1e6, 10_000.0);
     let mut step = 0_u32;
     let mut place = move || {
         step = step.wrapping_add(1);
         Vec2::new((step.wrapping_mul(7919) % 9001) as f32, (step.wrapping_mul(104_729) % 9001) as f32) - 4500.0
     };
-    let mut group = criterion.benchmark_group("question");
+    let mut group = criterion.benchmark_group("query");
     group.bench_function("nearest", |bencher| bencher.iter(|| store.nearest(black_box(place()), 10_000.0)));
     group.bench_function("within_30_m", |bencher| {
         bencher.iter(|| {
@@ -113,7 +69,7 @@ fn stream(criterion: &mut Criterion) {
     let (store, bounds) = forest(1e6, 10_000.0);
     let empty = CellStore::new(store.cell_m()).expect("the plan's cells");
     let settings = StreamSettings { most_ordered: 100_000, ..StreamSettings::default() };
-    let at = |x_m: f32| [Viewpoint { eye_m: Vec3::new(x_m, 2.0, 0.0), forward: Vec3::X }];
+    let at = |x_m: f32| [ViewerPose { eye_m: Vec3::new(x_m, 2.0, 0.0), forward: Vec3::X }];
     let new = |settings| CellStream::new(settings, store.cell_m(), Some(bounds)).expect("valid settings");
     let mut orders = Orders::default();
     let mut group = criterion.benchmark_group("stream");
@@ -152,5 +108,5 @@ fn stream(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, frames, questions, stream);
+criterion_group!(benches, queries, stream);
 criterion_main!(benches);

@@ -1,11 +1,19 @@
-//! What a frame pays for a branch, what it would pay without the shared table, and what a change of wind pays.
+//! The cost of posing a branch each frame, of a branch with oscillators of its own for comparison, and of a new wind.
 
-use bevy::math::{Quat, Vec2, Vec3, Vec4};
-use bevy_windwood::dynamics::{
-    BeamDynamics, BeamPose, ExactStep, FrequencyClasses, LoadBasis, LoadBasisKind, NO_PARENT, Oscillator,
-    OscillatorState, ResponseTable, TreePoser,
+#[path = "../src/dynamics/oracle/oscillator.rs"]
+#[expect(dead_code, reason = "a part of it is for the unit tests")]
+mod oscillator;
+
+use bevy::math::{Mat3, Vec2, Vec3, Vec4};
+use bevy_windwood::{
+    dynamics::{
+        BeamDynamics, BeamPose, ExactStep, FrequencyClasses, LoadBasis, LoadBasisKind, NO_PARENT, OscillatorState,
+        ResponseTable, TreePoser,
+    },
+    wind::cross_flow_pressure,
 };
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use oscillator::Oscillator;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use std::hint::black_box;
@@ -28,7 +36,7 @@ fn pose(criterion: &mut Criterion) {
 
     group.throughput(Throughput::Elements(BRANCHES as u64));
     group.bench_function("tree_500", |bencher| {
-        let poser = TreePoser::new(&beams, basis.map(), &classes, Quat::IDENTITY, 1.0);
+        let poser = TreePoser::new(&beams, basis.map(), &classes, Mat3::IDENTITY, 1.0);
         let mut poses = vec![BeamPose::REST; BRANCHES];
         let mut responses = vec![Vec4::ZERO; classes.count];
         let mut tau_s = 0.0;
@@ -41,7 +49,7 @@ fn pose(criterion: &mut Criterion) {
     });
     group.bench_function("prepare_500", |bencher| {
         let mut poser = TreePoser::default();
-        bencher.iter(|| poser.prepare(black_box(&beams), basis.map(), &classes, Quat::IDENTITY, 1.0));
+        bencher.iter(|| poser.prepare(black_box(&beams), basis.map(), &classes, Mat3::IDENTITY, 1.0));
     });
     group.bench_function("own_oscillators_500", |bencher| {
         let mut branches: Vec<OwnOscillators> = beams.iter().map(OwnOscillators::new).collect();
@@ -66,7 +74,7 @@ fn pose(criterion: &mut Criterion) {
         });
     });
     group.bench_function("duhamel_branch", |bencher| {
-        let oscillator = Oscillator::new(7.0, 0.1).expect("a valid oscillator");
+        let oscillator = Oscillator::new(7.0, 0.1);
         let load: Vec<f64> = columns[0].iter().map(|v| f64::from(v.length() * v.x)).collect();
         bencher.iter(|| oscillator.duhamel_at(black_box(&load), f64::from(TIME_STEP_S), SAMPLES - 1));
     });
@@ -79,7 +87,7 @@ fn tables(criterion: &mut Criterion) {
     let basis = basis(&columns);
     let classes = FrequencyClasses::default();
     criterion.bench_function("load_basis/default", |bencher| {
-        bencher.iter(|| LoadBasis::new(LoadBasisKind::Principal, black_box(&velocities), drag));
+        bencher.iter(|| LoadBasis::new(LoadBasisKind::Principal, black_box(&velocities), cross_flow_pressure));
     });
     criterion.bench_function("response_table/default", |bencher| {
         let build = |()| ResponseTable::new(black_box(&columns), TIME_STEP_S, &basis, classes, 0.1);
@@ -87,8 +95,8 @@ fn tables(criterion: &mut Criterion) {
     });
 }
 
-/// What a branch would carry without the shared table: its own modes 1 to 3 in both transverse directions, under the
-/// quadratic drag of the wind at its own place.
+/// A branch without the shared table: its own modes 1 to 3 in both transverse directions, under the quadratic drag of the
+/// wind at its own place.
 struct OwnOscillators {
     column: usize,
     direction: Vec3,
@@ -103,8 +111,7 @@ impl OwnOscillators {
     fn new(beam: &BeamDynamics) -> Self {
         let omega = 4.0 + f64::from(beam.length_m);
         let first = beam.direction.any_orthonormal_vector();
-        let step =
-            |ratio: f64| ExactStep::new(Oscillator::new(omega * ratio, 0.1).expect("a valid oscillator"), 1.0 / 60.0);
+        let step = |ratio: f64| ExactStep::new(omega * ratio, 0.1, 1.0 / 60.0).expect("a valid oscillator");
         Self {
             column: (beam.base.x.abs() * 100.0) as usize % COLUMNS,
             direction: beam.direction,
@@ -118,8 +125,8 @@ impl OwnOscillators {
     }
 
     fn step(&mut self, table: &ResponseTable, tau_s: f64) {
-        let drag = drag(table.velocity(self.column, tau_s), self.direction);
-        let load = Vec2::new(drag.dot(self.across[0]), drag.dot(self.across[1]));
+        let pressure = cross_flow_pressure(table.velocity(self.column, tau_s), self.direction);
+        let load = Vec2::new(pressure.dot(self.across[0]), pressure.dot(self.across[1]));
         for ((state, step), share) in self.states.iter_mut().zip(&self.steps).zip(self.shares) {
             *state = step.advance(*state, share * self.load, share * load);
         }
@@ -127,13 +134,8 @@ impl OwnOscillators {
     }
 }
 
-fn drag(velocity: Vec3, direction: Vec3) -> Vec3 {
-    let normal = velocity - velocity.dot(direction) * direction;
-    normal.length() * normal
-}
-
 fn basis(columns: &[Vec<Vec3>]) -> LoadBasis {
-    LoadBasis::new(LoadBasisKind::Principal, &columns.concat(), drag)
+    LoadBasis::new(LoadBasisKind::Principal, &columns.concat(), cross_flow_pressure)
 }
 
 /// A periodic wind of some harmonics of random phase.
@@ -155,7 +157,7 @@ fn wind() -> Vec<Vec<Vec3>> {
     (0..COLUMNS).map(|_| column()).collect()
 }
 
-/// A tree of which every beam but the first rides on one of those before it.
+/// A tree in which every beam but the first is attached to one of those before it.
 fn tree() -> Vec<BeamDynamics> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(2);
     let mut beams = vec![BeamDynamics {

@@ -1,7 +1,7 @@
-//! How long a forest takes to plant, and a pattern to characterise.
+//! The time to plant a forest, and to find the law of a pattern.
 
-#[path = "../examples/support/forests.rs"]
-mod forests;
+#[path = "../tools/support/forest_plans.rs"]
+mod forest_plans;
 
 use bevy::math::IVec2;
 use bevy_windwood::scatter::{
@@ -10,7 +10,7 @@ use bevy_windwood::scatter::{
     plan::{Area, Shape},
 };
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use forests::{huge, shipped};
+use forest_plans::{shipped, shipped_with_many_areas};
 use std::hint::black_box;
 
 /// A million trees in 6,241 cells.
@@ -40,7 +40,7 @@ fn forest(criterion: &mut Criterion) {
 /// The same cell, alone and in a landscape of others.
 fn cell(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("plant_cell");
-    for (name, plan) in [("small_forest", shipped()), ("huge_forest", huge())] {
+    for (name, plan) in [("small_forest", shipped()), ("huge_forest", shipped_with_many_areas())] {
         let planter = Planter::new(&plan).expect("a valid plan");
         let mut planted = Vec::new();
         group.bench_function(name, |bencher| {

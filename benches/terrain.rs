@@ -1,4 +1,4 @@
-//! How long random ground takes to read, and a map to analyse.
+//! The time to sample random ground, and to analyse a map.
 
 use bevy::math::DVec2;
 use bevy_windwood::terrain::{
@@ -54,7 +54,7 @@ fn estimation(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// A chunk of ground as the examples have it: a map's stand-in and hills, and a look at the pyramid from a new place.
+/// A chunk of ground as the examples have it: a map's stand-in and hills, and a selection of the pyramid from a new place.
 fn chunks(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("chunk");
     let hills = TurningBandsSettings { finest_wavelength_m: 10.0, scale_m: 50.0, seed: 2, ..Default::default() };
@@ -73,11 +73,11 @@ fn chunks(criterion: &mut Criterion) {
     group.bench_function("look_40_km", |bencher| {
         bencher.iter(|| {
             x += 1.0;
-            pyramid.look(&[Eye { place: DVec2::new(x, 0.0), above_ground_m: 2.0 }]);
+            pyramid.select(&[Eye { place: DVec2::new(x, 0.0), above_ground_m: 2.0 }]);
             while let Some(key) = pyramid.next_to_build() {
                 pyramid.receive(key);
             }
-            pyramid.forgotten().for_each(drop);
+            pyramid.dropped().for_each(drop);
             pyramid.drawn().len()
         });
     });

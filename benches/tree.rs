@@ -1,8 +1,8 @@
-//! How long a tree takes: growing, meshing, painting.
+//! The time to grow a tree, to mesh it, and to make its textures.
 
 use std::hint::black_box;
 
-use bevy_windwood::tree::{Species, TreeModel, bark::bark_textures, leaf::leaf_textures, skeleton::grow};
+use bevy_windwood::tree::{Species, TreeModel, bark::bark_textures, individual::grow, leaf::leaf_textures};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 fn oak() -> Species {

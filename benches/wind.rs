@@ -1,4 +1,4 @@
-//! How long a wind field takes to make and to read.
+//! The time to synthesise a wind field, and to sample it.
 
 use bevy::{
     math::Vec3,

@@ -13,34 +13,52 @@
 //!     .run();
 //! ```
 //!
+//! The guide in `docs/guide` has a chapter on each part. Begin with [`Wind`](wind::Wind), [`Tree`](tree::Tree),
+//! [`Forest`](forest::Forest) and [`Terrain`](terrain::Terrain).
+//!
 //! # How it works
-//! Once per wind, off the frame: a periodic field of turbulent wind is synthesised from measured spectra
-//! ([`wind`]); from it the response of unit cantilever beams is computed exactly, for a ladder of natural frequencies,
-//! for each lateral place and each moment ([`dynamics`]). Once per species: trees are grown and baked into models whose
-//! every branch knows its frequency and its exposure ([`tree`]). Then each frame a branch, of any tree, costs one
-//! interpolated fetch from that table and a few multiplications, in the vertex shader ([`sway`]).
+//! - **Once per wind**, in the background: a periodic field of turbulent wind is synthesised from measured spectra
+//!   ([`wind`]). From it the response of unit cantilever beams is computed, for some twenty natural frequencies, for each
+//!   place across the wind and each moment ([`dynamics`]). [`sway`] keeps these tables and fades between those of two winds.
+//! - **Once per species**, in the background: trees are grown and baked into models ([`tree`]). Every branch of a model
+//!   knows its frequency and its exposure to the wind. [`lod`] makes the lower levels of detail.
+//! - **In every frame**, on the GPU (`render`): a compute pass poses every branch of every tree in view. For each branch it
+//!   fetches one interpolated row of the table and multiplies a few numbers. The vertex shader moves vertices with their
+//!   branches. On the CPU there is work only for what changes.
 //!
 //! # Rooms
+//! Each folder of `src` is a room. A room imports only those that it may know; `tests/architecture.rs` checks it.
+//!
 //! | room | what | knows |
 //! |---|---|---|
-//! | [`wind`] | spectra, field, gusts, [`Wind`](wind::Wind), [`WindCell`](wind::WindCell) | nobody |
-//! | [`dynamics`] | cantilevers, oscillators, load bases, response tables, poses; no ECS | nobody |
-//! | [`texture`] | the canvas with its mips, Fourier textures | nobody |
+//! | [`wind`] | spectra, field, gusts, [`Wind`](wind::Wind), [`WindCell`](wind::WindCell) | none |
+//! | [`dynamics`] | cantilevers, load bases, response tables, poses; no ECS | none |
+//! | [`texture`] | images with mips, Fourier textures | none |
+//! | [`scatter`] | point patterns and forest plans: where plants stand | none |
 //! | [`tree`] | species, growth, meshes, [`Tree`](tree::Tree), [`Season`](tree::Season) | dynamics, texture |
-//! | [`sway`] | trees in the wind, at all levels of detail, on the processor and in shaders | tree, wind, dynamics, texture, lod |
-//! | [`lod`] | lower levels of detail of a baked tree: reduced meshes, envelopes, views | tree, texture, dynamics |
-//! | [`grass`] | meadows that bend in the wind, [`GrassPatch`](grass::GrassPatch) | sway |
-//! | [`fire`] | fires that lean with it and give light, [`Fire`](fire::Fire) | sway, wind |
-//! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Terrain`](terrain::Terrain) | texture |
-//! | [`scatter`] | point patterns and forest plans: where plants stand | nobody |
-//! | [`forest`] | forests that grow from plans about the viewers, [`Forest`](forest::Forest) | scatter, cells, terrain, tree, lod, sway, wind |
-//! | [`cells`] | the forest's voxel grid: what is seen, at which level, what to plant, who stands where; no ECS | scatter, lod |
+//! | [`lod`] | lower levels of detail of a baked tree: decimated meshes, impostors, envelopes | tree, texture, dynamics |
+//! | [`sway`] | how trees answer the wind: response tables, fades, articulated trees; no rendering | tree, wind, dynamics |
+//! | `render` | how trees are drawn: prepared species, instances, LOD selection, shaders, impostors | sway, lod, tree, wind, dynamics, texture |
+//! | [`grass`] | meadows that bend in the wind, [`GrassPatch`](grass::GrassPatch) | sway, render |
+//! | [`fire`] | fires that lean with it and give light, [`Fire`](fire::Fire) | sway, wind, render |
+//! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Terrain`](terrain::Terrain) | texture, render |
+//! | [`cells`] | the grid of a forest: what to plant, what is seen, stems by place; no ECS | scatter |
+//! | [`forest`] | forests that grow from plans around the viewers, [`Forest`](forest::Forest) | scatter, cells, terrain, tree, lod, sway, wind, render |
+//!
+//! Order your own systems against the sets of [`WindwoodSystems`].
+//!
+//! # Features
+//! `render` (on by default) holds all drawing. Without it, [`WindwoodMinimalPlugins`] moves the same trees on a server or in
+//! a test.
 
-mod retire;
+mod background;
+mod constants;
+mod interpolation;
+mod plugin_checks;
+mod ron_text;
 mod schedule;
+mod sequence;
 mod setting;
-#[cfg(feature = "render")]
-mod shading;
 mod timing;
 mod viewpoint;
 
@@ -51,7 +69,7 @@ pub mod forest;
 pub mod grass;
 pub mod lod;
 #[cfg(feature = "render")]
-mod render;
+pub mod render;
 pub mod scatter;
 pub mod sway;
 pub mod terrain;
@@ -59,6 +77,7 @@ pub mod texture;
 pub mod tree;
 pub mod wind;
 
+pub use ron_text::SyntaxError;
 pub use schedule::WindwoodSystems;
 pub use setting::SettingError;
 pub use timing::SystemTimes;
@@ -69,7 +88,7 @@ use bevy::app::{PluginGroup, PluginGroupBuilder};
 /// What a game needs: `use bevy_windwood::prelude::*;`.
 pub mod prelude {
     #[cfg(feature = "render")]
-    pub use crate::sway::{LevelOfDetail, LevelStyle, TreeLighting};
+    pub use crate::render::{LevelOfDetail, LevelStyle, TreeLighting, TreeMeshes};
     pub use crate::{
         Viewpoint, WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
         fire::{Fire, FireLook, FireShape},
@@ -90,11 +109,11 @@ impl PluginGroup for WindwoodPlugins {
         let group = PluginGroupBuilder::start::<Self>().add_group(WindwoodMinimalPlugins);
         #[cfg(feature = "render")]
         let group = group
-            .add(sway::SwayDrawPlugin)
+            .add(render::TreeRenderPlugin)
             .add(grass::GrassDrawPlugin)
             .add(fire::FireDrawPlugin)
             .add(terrain::TerrainDrawPlugin)
-            .add(forest::ForestDrawPlugin)
+            .add(forest::ForestRenderPlugin)
             .add(wind::WindGizmoPlugin);
         group
     }
@@ -114,4 +133,29 @@ impl PluginGroup for WindwoodMinimalPlugins {
             .add(fire::FirePlugin)
             .add(forest::ForestPlugin)
     }
+}
+
+/// The code blocks of the readme and the guide, compiled by `cargo test --doc`.
+#[cfg(all(doctest, feature = "render"))]
+mod guide {
+    #[doc = include_str!("../README.md")]
+    struct Readme;
+    #[doc = include_str!("../docs/guide/wind.md")]
+    struct Wind;
+    #[doc = include_str!("../docs/guide/trees.md")]
+    struct Trees;
+    #[doc = include_str!("../docs/guide/forests.md")]
+    struct Forests;
+    #[doc = include_str!("../docs/guide/ground.md")]
+    struct Ground;
+    #[doc = include_str!("../docs/guide/grass_and_fire.md")]
+    struct GrassAndFire;
+    #[doc = include_str!("../docs/guide/lod.md")]
+    struct Lod;
+    #[doc = include_str!("../docs/guide/species.md")]
+    struct Species;
+    #[doc = include_str!("../docs/guide/servers.md")]
+    struct Servers;
+    #[doc = include_str!("../docs/guide/shaders.md")]
+    struct Shaders;
 }

@@ -1,4 +1,4 @@
-//! What is wrong with a setting, told so that it can be put right.
+//! The one error for a setting outside its domain: it names the field, the value and what is allowed.
 
 use std::{fmt::Display, ops::RangeInclusive};
 use thiserror::Error;
@@ -16,7 +16,7 @@ pub struct SettingError {
 }
 
 impl SettingError {
-    pub(crate) fn new(field: &str, value: impl Display, allowed: impl Into<String>) -> Self {
+    pub(crate) fn new(field: impl Into<String>, value: impl Display, allowed: impl Into<String>) -> Self {
         Self { field: field.into(), value: value.to_string(), allowed: allowed.into() }
     }
 
@@ -29,7 +29,11 @@ impl SettingError {
 }
 
 /// Refuses a value outside `allowed`, NaN among them.
-pub(crate) fn require(field: &str, value: f32, allowed: RangeInclusive<f32>) -> Result<(), SettingError> {
+pub(crate) fn require<T: PartialOrd + Display>(
+    field: &str,
+    value: T,
+    allowed: RangeInclusive<T>,
+) -> Result<(), SettingError> {
     if allowed.contains(&value) {
         return Ok(());
     }
@@ -39,4 +43,18 @@ pub(crate) fn require(field: &str, value: f32, allowed: RangeInclusive<f32>) -> 
 /// Refuses a colour with a channel outside 0 to 1.
 pub(crate) fn require_colour(field: &str, colour: [f32; 3]) -> Result<(), SettingError> {
     colour.into_iter().try_for_each(|channel| require(field, channel, 0.0..=1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_names_the_path_the_value_and_what_is_allowed() {
+        let error = require("ratio", f64::NAN, 1.0..=10.0).unwrap_err().inside("anisotropy");
+        assert_eq!(error.to_string(), "`anisotropy.ratio` is NaN, but must be 1 to 10");
+        assert_eq!(require("lines", 16_u32, 1..=256), Ok(()));
+        let error = require_colour("colour", [0.0, 1.0, 2.0]).unwrap_err();
+        assert_eq!(error.to_string(), "`colour` is 2, but must be 0 to 1");
+    }
 }

@@ -23,9 +23,9 @@ impl Viewpoints<'_, '_> {
     }
 
     /// Fills `viewpoints` with where they are and where they look.
-    pub(crate) fn fill(&self, viewpoints: &mut Vec<cells::Viewpoint>) {
+    pub(crate) fn fill(&self, viewpoints: &mut Vec<cells::ViewerPose>) {
         viewpoints.clear();
-        let one = |at: &GlobalTransform| cells::Viewpoint { eye_m: at.translation(), forward: at.forward().as_vec3() };
+        let one = |at: &GlobalTransform| cells::ViewerPose { eye_m: at.translation(), forward: at.forward().as_vec3() };
         viewpoints.extend(self.frames().map(one));
     }
 

@@ -1,148 +1,79 @@
-//! Who may know whom: the rooms of the crate, and the pure code inside them.
+//! Which file may import which: the rules of the source tree, each of which can be read off a path.
+//!
+//! 1. **Rooms.** Every folder of `src` is a room. [`MAY_KNOW`] says which rooms a room may import.
+//! 2. **No circles.** No file imports, by way of others or not, a file that imports it. A path counts as an import of
+//!    the file that defines the item, however many re-exports lie between. A `mod` declaration and a `pub use` are no
+//!    imports; what a `mod.rs` does with its children's items in code of its own is one.
+//! 3. **Engine.** Files are plain Rust on [`PURE_ENGINE`]. Only these may use more of Bevy (entities, systems, apps,
+//!    rendering):
+//!    - all files of the rooms in [`ENGINE_ROOMS`],
+//!    - files with a name in [`ENGINE_FILES`],
+//!    - files in a folder `ecs` (resources and systems, by subject),
+//!    - the files beside `lib.rs`.
+//!
+//! Test code is not looked at: files and folders named `tests`, and modules under `#[cfg(test)]`.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+#[path = "architecture/circles.rs"]
+mod circles;
+#[path = "architecture/imports.rs"]
+mod imports;
+#[path = "architecture/modules.rs"]
+mod modules;
+
+use circles::circles;
+use modules::{Crate, File};
 
 /// A room and the rooms it may import. A room that is not here may not exist.
-const MAY_KNOW: [(&str, &[&str]); 12] = [
+const MAY_KNOW: [(&str, &[&str]); 13] = [
     ("wind", &[]),
     ("dynamics", &[]),
     ("texture", &[]),
-    ("terrain", &["texture"]),
+    ("terrain", &["texture", "render"]),
     ("scatter", &[]),
-    ("cells", &["scatter", "lod"]),
+    ("cells", &["scatter"]),
     ("tree", &["dynamics", "texture"]),
     ("lod", &["tree", "texture", "dynamics"]),
     ("sway", &["tree", "wind", "dynamics", "texture", "lod"]),
-    ("grass", &["sway"]),
-    ("fire", &["sway", "wind"]),
-    ("forest", &["scatter", "cells", "terrain", "tree", "lod", "sway", "wind"]),
+    ("render", &["sway", "lod", "tree", "texture", "wind", "dynamics"]),
+    ("grass", &["sway", "render"]),
+    ("fire", &["sway", "wind", "render"]),
+    ("forest", &["scatter", "cells", "terrain", "tree", "lod", "sway", "wind", "render"]),
 ];
 
-/// Files that glue a room to the engine. All others but those of `sway` are pure: they can be read beside the
-/// paper, and know no entities, systems or apps.
-const GLUE: [&str; 40] = [
-    "wind/cells.rs",
-    "wind/clock.rs",
-    "wind/current.rs",
-    "wind/gizmos.rs",
-    "wind/plugin.rs",
-    "tree/components.rs",
-    "tree/grove.rs",
-    "tree/grow.rs",
-    "tree/loader.rs",
-    "tree/plugin.rs",
-    "tree/season.rs",
-    "grass/grow.rs",
-    "grass/plugin.rs",
-    "grass/draw.rs",
-    "grass/material.rs",
-    "grass/mesh.rs",
-    "fire/burn.rs",
-    "fire/plugin.rs",
-    "fire/draw.rs",
-    "fire/material.rs",
-    "fire/mesh.rs",
-    "forest/components.rs",
-    "forest/far/blocks.rs",
-    "forest/far/looks.rs",
-    "forest/far/material.rs",
-    "forest/far/mesh.rs",
-    "forest/far/near.rs",
-    "forest/far/plugin.rs",
-    "forest/loader.rs",
-    "forest/plugin.rs",
-    "forest/serve.rs",
-    "forest/cells.rs",
-    "forest/cull.rs",
-    "forest/diagnose.rs",
-    "forest/near.rs",
-    "terrain/components.rs",
-    "terrain/material.rs",
-    "terrain/plugin.rs",
-    "terrain/stream.rs",
-    "lib.rs",
-];
+/// Rooms that are all entities and systems.
+const ENGINE_ROOMS: [&str; 3] = ["sway", "render", "forest"];
 
-/// What pure code may take from the engine: mathematics, reflection, collections, and the mark of an asset.
+/// Names of files that join a room to the engine.
+const ENGINE_FILES: [&str; 7] =
+    ["plugin.rs", "components.rs", "loader.rs", "mesh.rs", "material.rs", "draw.rs", "gizmos.rs"];
+
+/// What all files may take from the engine: mathematics, reflection, collections, tasks, and the mark of an asset.
 const PURE_ENGINE: [&str; 5] = ["math", "reflect", "asset", "tasks", "platform"];
 
-fn source() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
+/// Whether rule 3 lets a file use the whole engine. `path` is relative to `src`.
+fn may_use_engine(path: &str) -> bool {
+    let mut folders: Vec<&str> = path.split('/').collect();
+    let name = folders.pop().unwrap_or_default();
+    let room = folders.first();
+    room.is_none_or(|room| ENGINE_ROOMS.contains(room)) || ENGINE_FILES.contains(&name) || folders.contains(&"ecs")
 }
 
-fn rust_files(folder: &Path) -> Vec<PathBuf> {
-    let mut files = Vec::new();
-    for entry in fs::read_dir(folder).expect("the folder is readable").map(|entry| entry.expect("readable").path()) {
-        if entry.is_dir() {
-            files.extend(rust_files(&entry));
-        } else if entry.extension().is_some_and(|extension| extension == "rs") {
-            files.push(entry);
-        }
-    }
-    files.sort();
-    files
-}
-
-/// The paths that a file imports from `root` (`crate` or `bevy`), flattened: `use crate::{a::B, c}` gives `a::B` and `c`.
-fn imports(text: &str, root: &str) -> Vec<String> {
-    let code: String = text.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join(" ");
-    let mut found = Vec::new();
-    for (start, _) in code.match_indices(&format!("{root}::")) {
-        let boundary = code[..start].chars().next_back().is_none_or(|c| !c.is_alphanumeric() && c != '_');
-        if boundary {
-            flatten(&code[start + root.len() + 2..], String::new(), &mut found);
-        }
-    }
-    found
-}
-
-/// Reads one path, or a braced list of paths, from the start of `text`.
-fn flatten(text: &str, prefix: String, found: &mut Vec<String>) {
-    let text = text.trim_start();
-    let Some(list) = text.strip_prefix('{') else {
-        let end = text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
-        found.push(prefix + &text[..end]);
-        return;
-    };
-    let (mut depth, mut item) = (0, String::new());
-    for c in list.chars() {
-        match c {
-            '{' => depth += 1,
-            '}' if depth == 0 => break,
-            '}' => depth -= 1,
-            ',' if depth == 0 => {
-                flatten(&std::mem::take(&mut item), prefix.clone(), found);
-                continue;
-            }
-            _ => {}
-        }
-        item.push(c);
-    }
-    if !item.trim().is_empty() {
-        flatten(&item, prefix, found);
-    }
+/// The first folder of a path, for a file that is in one.
+fn room(file: &File) -> Option<&str> {
+    file.path.split_once('/').map(|(room, _)| room)
 }
 
 #[test]
-fn imports_are_read_out_of_nested_lists() {
-    let text = "use crate::{dynamics::{a, b::C}, wind::D}; // use crate::sway\nlet x = crate::tree::f();";
-    assert_eq!(imports(text, "crate"), ["dynamics", "wind", "tree"]);
-}
-
-#[test]
-fn rooms_know_only_whom_they_may() {
+fn rooms_import_only_rooms_they_may_know() {
+    let source = Crate::read();
     let mut wrong = Vec::new();
-    for (room, allowed) in MAY_KNOW {
-        for file in rust_files(&source().join(room)) {
-            let text = fs::read_to_string(&file).expect("readable");
-            for import in imports(&text, "crate") {
-                let is_room = MAY_KNOW.iter().any(|(other, _)| *other == import);
-                if is_room && import != room && !allowed.contains(&import.as_str()) {
-                    wrong.push(format!("{}: crate::{import}", file.display()));
-                }
+    for file in &source.files {
+        let Some((room, allowed)) = MAY_KNOW.iter().find(|(name, _)| Some(*name) == room(file)) else { continue };
+        for import in source.imports(file) {
+            let Some(other) = import.split("::").next() else { continue };
+            let is_room = MAY_KNOW.iter().any(|(name, _)| *name == other);
+            if is_room && other != *room && !allowed.contains(&other) {
+                wrong.push(format!("{}: crate::{import}", file.path));
             }
         }
     }
@@ -150,34 +81,44 @@ fn rooms_know_only_whom_they_may() {
 }
 
 #[test]
-fn every_folder_of_the_source_is_a_room_that_is_named_here() {
-    for entry in fs::read_dir(source()).expect("readable").map(|entry| entry.expect("readable").path()) {
-        let name = entry.file_name().expect("a name").to_string_lossy().into_owned();
-        let known = MAY_KNOW.iter().any(|(room, _)| *room == name);
-        assert!(!entry.is_dir() || known, "`{name}` is no room of the architecture");
+fn every_folder_of_the_source_is_a_room_of_the_table() {
+    for file in &Crate::read().files {
+        let known = room(file).is_none_or(|room| MAY_KNOW.iter().any(|(name, _)| *name == room));
+        assert!(known, "the folder of `{}` is not in `MAY_KNOW`", file.path);
     }
 }
 
 #[test]
-fn pure_code_knows_no_entities() {
+fn no_files_import_each_other_in_a_circle() {
+    let source = Crate::read();
+    let found = circles(&source.edges());
+    let told: Vec<String> = found
+        .iter()
+        .map(|circle| {
+            let arrows = circle.arrows.iter().map(|arrow| format!("  {} -> {}", arrow.0, arrow.1)).collect::<Vec<_>>();
+            format!("{} files:\n{}", circle.files.len(), arrows.join("\n"))
+        })
+        .collect();
+    assert!(found.is_empty(), "circles of files:\n{}", told.join("\n"));
+}
+
+#[test]
+fn only_engine_files_import_the_engine() {
+    let source = Crate::read();
     let mut wrong = Vec::new();
-    for (room, _) in MAY_KNOW.iter().filter(|(room, _)| *room != "sway") {
-        for file in rust_files(&source().join(room)) {
-            let name = file.strip_prefix(source()).expect("inside the source").to_string_lossy().replace('\\', "/");
-            if GLUE.contains(&name.as_str()) {
-                continue;
-            }
-            let text = fs::read_to_string(&file).expect("readable");
-            let outside = imports(&text, "bevy").into_iter().filter(|import| !PURE_ENGINE.contains(&import.as_str()));
-            wrong.extend(outside.map(|import| format!("{name}: bevy::{import}")));
-        }
+    for file in source.files.iter().filter(|file| !may_use_engine(&file.path)) {
+        let outside = file.engine_imports().into_iter().filter(|import| !PURE_ENGINE.contains(&import.as_str()));
+        wrong.extend(outside.map(|import| format!("{}: bevy::{import}", file.path)));
     }
-    assert!(wrong.is_empty(), "engine in pure code:\n{}", wrong.join("\n"));
+    assert!(wrong.is_empty(), "engine in plain code:\n{}", wrong.join("\n"));
 }
 
 #[test]
-fn glue_that_is_excused_exists() {
-    for file in GLUE {
-        assert!(source().join(file).is_file(), "src/{file} is gone; take it off the list");
+fn engine_files_are_told_by_their_path() {
+    for path in ["lib.rs", "sway/active.rs", "wind/plugin.rs", "tree/ecs/season.rs", "render/draw/bounds.rs"] {
+        assert!(may_use_engine(path), "{path}");
+    }
+    for path in ["wind/field.rs", "tree/growth/age.rs", "tree/growth/plugins.rs"] {
+        assert!(!may_use_engine(path), "{path}");
     }
 }

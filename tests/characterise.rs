@@ -1,4 +1,4 @@
-//! The example `characterise` as its users run it: maps and patterns good and bad.
+//! The tool `characterise` as its users run it, with valid and invalid maps and patterns.
 
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rand_distr::{Distribution, Normal};
@@ -12,10 +12,10 @@ use tempfile::TempDir;
 
 #[path = "../examples/support/arguments.rs"]
 mod arguments;
-#[path = "../examples/characterise/csv_points.rs"]
+#[path = "../tools/characterise/csv_points.rs"]
 #[expect(dead_code, reason = "the example reads files with it, these tests text")]
 mod csv_points;
-#[path = "../examples/characterise/options.rs"]
+#[path = "../tools/characterise/options.rs"]
 mod options;
 
 const ROCKIES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/terrain/rmnp-dem-16bit.png");

@@ -1,4 +1,4 @@
-//! Hiding cells that nobody sees changes no picture. Needs a Vulkan driver; Mesa's software one will do.
+//! Frustum culling of cells changes no picture. Needs a Vulkan driver. Mesa's software one will do.
 
 mod support;
 
@@ -8,19 +8,19 @@ use bevy_windwood::{
     prelude::*,
 };
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
-use support::wood::Wood;
+use support::forest::TestForest;
 
-fn hidden_cells(wood: &mut Wood) -> usize {
-    let world = wood.app.world_mut();
+fn hidden_cells(forest: &mut TestForest) -> usize {
+    let world = forest.app.world_mut();
     let mut cells = world.query_filtered::<&Visibility, With<ForestCell>>();
     cells.iter(world).filter(|visibility| **visibility == Visibility::Hidden).count()
 }
 
 #[test]
-fn no_tree_and_no_shadow_in_view_is_missing() {
+fn pictures_are_equal_with_and_without_culling() {
     let settings = ForestSettings { trees_to_m: 300.0, far_to_m: 0.0, ..default() };
-    let mut wood = Wood::new(settings, None);
-    let world = wood.app.world_mut();
+    let mut forest = TestForest::new(settings, None);
+    let world = forest.app.world_mut();
     let ground = world.resource_mut::<Assets<Mesh>>().add(Plane3d::default().mesh().size(900.0, 900.0));
     let white = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial::from(Color::WHITE));
     world.spawn((Mesh3d(ground), MeshMaterial3d(white)));
@@ -35,13 +35,13 @@ fn no_tree_and_no_shadow_in_view_is_missing() {
         let mut place = || random.random_range(-120.0..120.0_f32);
         let eye = Vec3::new(place(), 8.0, place());
         let towards = Vec3::new(place(), -12.0, place());
-        wood.look(eye, towards);
-        wood.app.world_mut().insert_resource(ForestCulling { enabled: true, around_m: 0.0, lingering_frames: 0 });
-        let culled = wood.picture();
-        hidden += hidden_cells(&mut wood);
-        wood.app.world_mut().insert_resource(ForestCulling { enabled: false, ..default() });
-        let all = wood.picture();
-        assert_eq!(hidden_cells(&mut wood), 0);
+        forest.look(eye, towards);
+        forest.app.world_mut().insert_resource(ForestCulling { enabled: true, around_m: 0.0, lingering_frames: 0 });
+        let culled = forest.picture();
+        hidden += hidden_cells(&mut forest);
+        forest.app.world_mut().insert_resource(ForestCulling { enabled: false, ..default() });
+        let all = forest.picture();
+        assert_eq!(hidden_cells(&mut forest), 0);
         let differing = culled.pixels().zip(all.pixels()).filter(|(a, b)| a != b).count();
         assert_eq!(differing, 0, "pixels of view {view}, from {eye} towards {towards}");
     }

@@ -1,7 +1,7 @@
-//! The plugins as a game sees them, without rendering and with the clock in the test's hand.
+//! The plugins as a game uses them, without rendering. The tests set the clock.
 
 use bevy::{prelude::*, time::TimeUpdateStrategy};
-use bevy_windwood::{prelude::*, tree::Grove, tree::TreeModel};
+use bevy_windwood::{prelude::*, tree::SpeciesModels, tree::TreeModel};
 use std::{path::Path, time::Duration};
 
 const FRAME_S: f32 = 1.0 / 30.0;
@@ -49,8 +49,8 @@ fn wait_for_wind(app: &mut App) {
 
 fn wait_for_trees(app: &mut App) {
     wait_until(app, "the trees", |world| {
-        let bare = world.query_filtered::<(), (With<Tree>, Without<Grown>)>().iter(world).count();
-        bare == 0 && !world.resource::<Grove>().is_baking()
+        let without_model = world.query_filtered::<(), (With<Tree>, Without<Grown>)>().iter(world).count();
+        without_model == 0 && !world.resource::<SpeciesModels>().is_baking()
     });
 }
 
@@ -69,7 +69,7 @@ fn beam_places(app: &mut App) -> Vec<Vec3> {
 }
 
 #[test]
-fn wind_cells_feel_the_field_at_their_place() {
+fn wind_cells_get_the_wind_at_their_place() {
     let mut app = app();
     let place = Vec3::new(30.0, 112.0, -7.0);
     let cell = app.world_mut().spawn((WindCell::above(100.0), Transform::from_translation(place))).id();
@@ -79,15 +79,15 @@ fn wind_cells_feel_the_field_at_their_place() {
     app.update();
     let clock = *app.world().resource::<WindClock>();
     let wind = app.world().resource::<ActiveWind>().sample(Vec3::new(30.0, 12.0, -7.0), clock.time_s);
-    let felt = app.world().get::<WindCell>(cell).expect("the cell is there").velocity;
-    assert_eq!(felt, wind);
-    assert!(felt.length() > 1.0, "8 m/s were asked for, {felt} is felt");
+    let sampled = app.world().get::<WindCell>(cell).expect("the cell is there").velocity;
+    assert_eq!(sampled, wind);
+    assert!(sampled.length() > 1.0, "8 m/s were asked for, not {sampled}");
     let at_ground = app.world().get::<WindCell>(ground).expect("the cell is there").velocity;
-    assert!(at_ground.length() < felt.length(), "the wind is weaker at the ground");
+    assert!(at_ground.length() < sampled.length(), "the wind is weaker at the ground");
 }
 
 #[test]
-fn an_articulated_tree_gives_beams_that_move_and_stay_on_it() {
+fn beams_of_an_articulated_tree_move_and_stay_near_it() {
     let mut app = app();
     let tree = plant(&mut app, "fir", Vec3::new(5.0, 2.0, 1.0));
     app.world_mut().entity_mut(tree).insert(Articulated::default());
@@ -109,7 +109,7 @@ fn an_articulated_tree_gives_beams_that_move_and_stay_on_it() {
 }
 
 #[test]
-fn a_beam_rides_on_the_place_that_it_is_told() {
+fn a_beam_entity_is_at_its_place_along_the_beam() {
     let mut app = app();
     let tree = plant(&mut app, "fir", Vec3::ZERO);
     app.world_mut().entity_mut(tree).insert(only_the_trunk());
@@ -141,7 +141,7 @@ fn despawning_a_tree_despawns_its_beams_and_leaves() {
 }
 
 #[test]
-fn taking_articulation_away_takes_the_beams_away() {
+fn removing_articulated_despawns_the_beams() {
     let mut app = app();
     let tree = plant(&mut app, "oak", Vec3::ZERO);
     app.world_mut().entity_mut(tree).insert(only_the_trunk());
@@ -155,7 +155,7 @@ fn taking_articulation_away_takes_the_beams_away() {
 }
 
 #[test]
-fn a_change_of_the_wind_fades_in_without_a_jump() {
+fn a_new_wind_fades_in_without_a_jump() {
     let mut app = app();
     let tree = plant(&mut app, "fir", Vec3::ZERO);
     app.world_mut().entity_mut(tree).insert(only_the_trunk());
@@ -189,7 +189,7 @@ fn a_change_of_the_wind_fades_in_without_a_jump() {
 }
 
 #[test]
-fn two_apps_with_one_seed_agree_bit_for_bit() {
+fn poses_are_the_same_bits_in_two_apps() {
     let run = || {
         let mut app = app();
         for (index, species) in ["oak", "fir", "oak"].into_iter().enumerate() {
@@ -215,7 +215,7 @@ fn two_apps_with_one_seed_agree_bit_for_bit() {
 }
 
 #[test]
-fn a_thousand_trees_come_and_go_ten_times_and_leave_nothing() {
+fn spawning_and_despawning_trees_leaks_nothing() {
     let mut app = app();
     let mut entities = None;
     for _ in 0..10 {
@@ -229,7 +229,7 @@ fn a_thousand_trees_come_and_go_ten_times_and_leave_nothing() {
         assert_eq!(trees.len(), 1000);
         trees.into_iter().for_each(|tree| assert!(world.despawn(tree)));
         (0..4).for_each(|_| app.update());
-        assert!(app.world().resource::<Grove>().is_empty(), "a species that nobody grows is dropped");
+        assert!(app.world().resource::<SpeciesModels>().is_empty(), "a species that nobody grows is dropped");
         assert_eq!(app.world().resource::<Assets<TreeModel>>().len(), 0);
         let count = app.world().entities().count_spawned();
         assert_eq!(*entities.get_or_insert(count), count);
@@ -237,7 +237,7 @@ fn a_thousand_trees_come_and_go_ten_times_and_leave_nothing() {
 }
 
 #[test]
-fn a_species_that_changes_on_disk_grows_anew_and_a_broken_one_changes_nothing() {
+fn a_changed_species_file_is_baked_again_and_a_broken_one_is_ignored() {
     let folder = tempfile::tempdir().expect("a folder for the test");
     std::fs::create_dir(folder.path().join("species")).expect("it can be made");
     let file = folder.path().join("species/oak.species.ron");
@@ -274,35 +274,67 @@ fn a_species_that_changes_on_disk_grows_anew_and_a_broken_one_changes_nothing() 
 }
 
 #[test]
-fn bad_winds_are_clamped_or_refused_and_the_app_lives_on() {
+fn winds_out_of_range_are_clamped_or_refused() {
     let mut app = app();
     wait_for_wind(&mut app);
-    let speed = |app: &App| app.world().resource::<ActiveWind>().newest().expect("a field").settings().mean_speed_m_s;
+    let speed = |app: &App| app.world().resource::<ActiveWind>().newest().expect("a field").settings().speed;
     let good = speed(&app);
     app.world_mut().resource_mut::<Wind>().speed = f32::NAN;
     for _ in 0..40 {
         app.update();
         std::thread::sleep(Duration::from_millis(5));
     }
-    assert_eq!(speed(&app), good, "the last good wind blows on");
+    assert_eq!(speed(&app), good, "the last good wind stays in force");
     app.world_mut().resource_mut::<Wind>().speed = 300.0;
     wait_until(&mut app, "a wind at the limit", |world| {
-        let newest = world.resource::<ActiveWind>().newest().map(|field| field.settings().mean_speed_m_s);
+        let newest = world.resource::<ActiveWind>().newest().map(|field| field.settings().speed);
         newest == Some(75.0)
     });
     for _ in 0..200 {
         app.update();
     }
-    let blows = app.world().resource::<ActiveWind>().sample(Vec3::new(1.0, 10.0, 2.0), 7.0);
-    assert!(blows.is_finite() && blows.length() > 20.0);
+    let wind = app.world().resource::<ActiveWind>().sample(Vec3::new(1.0, 10.0, 2.0), 7.0);
+    assert!(wind.is_finite() && wind.length() > 20.0);
 }
 
 #[test]
-fn no_trees_and_unknown_species_do_no_harm() {
+fn an_unknown_species_gives_no_model() {
     let mut app = app();
     plant(&mut app, "there_is_no_such_tree", Vec3::ZERO);
     wait_for_wind(&mut app);
     (0..20).for_each(|_| app.update());
     let world = app.world_mut();
     assert_eq!(world.query::<&Grown>().iter(world).count(), 0);
+}
+
+/// Frames in which a system sees [`ActiveWind`] as changed.
+#[derive(Resource, Default)]
+struct ChangedFrames(u32);
+
+#[test]
+fn active_wind_counts_as_changed_only_while_it_changes() {
+    let mut app = app();
+    app.init_resource::<ChangedFrames>().add_systems(
+        Update,
+        |wind: Res<ActiveWind>, mut frames: ResMut<ChangedFrames>| {
+            frames.0 += u32::from(wind.is_changed());
+        },
+    );
+    wait_until(&mut app, "the wind", |world| world.resource::<ActiveWind>().is_settled());
+    let changed_frames = |app: &mut App, frames: u32| {
+        app.world_mut().resource_mut::<ChangedFrames>().0 = 0;
+        (0..frames).for_each(|_| app.update());
+        app.world().resource::<ChangedFrames>().0
+    };
+    assert_eq!(changed_frames(&mut app, 50), 0, "nothing changes");
+
+    app.world_mut().resource_mut::<Wind>().speed = 12.0;
+    wait_until(&mut app, "the new field", |world| {
+        world.resource::<ActiveWind>().newest().is_some_and(|field| field.settings().speed == 12.0)
+    });
+    // The fade takes 3 s, 90 frames.
+    assert_eq!(changed_frames(&mut app, 60), 60, "the fade runs");
+    assert!(changed_frames(&mut app, 60) < 60, "the fade has ended");
+    assert!(app.world().resource::<ActiveWind>().is_settled());
+    assert_eq!(changed_frames(&mut app, 50), 0, "nothing changes");
 }

@@ -1,4 +1,4 @@
-//! Long flights through a forest, leaps, and what its culling hides; without rendering.
+//! Long flights through a forest, jumps of the camera, and frustum culling of cells; without rendering.
 
 use bevy::{
     camera::CameraPlugin,
@@ -7,7 +7,7 @@ use bevy::{
     prelude::*,
 };
 use bevy_windwood::{
-    forest::{ForestCell, ForestCells, ForestCulling, ForestDrawPlugin},
+    forest::{ForestCell, ForestCells, ForestCulling, ForestRenderPlugin},
     prelude::*,
     scatter::{
         ForestPlan,
@@ -23,15 +23,15 @@ use std::{
 
 const CELL_M: f32 = 32.0;
 const TREES_PER_FRAME: u32 = 50;
-/// A cell that is out of view is hidden after fewer frames.
+/// Frames after which every cell that is out of view is hidden.
 const FRAMES_TO_HIDE: usize = 70;
 const SHADOWS_TO_M: f32 = 150.0;
 
-/// A wide wood on level ground, and a camera over its middle.
+/// A large forest on level ground, and a camera over its middle.
 fn forest_app(trees_to_m: f32, far_to_m: f32) -> (App, Entity) {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default(), MeshPlugin, CameraPlugin));
-    app.add_plugins((WindwoodMinimalPlugins, ForestDrawPlugin));
+    app.add_plugins((WindwoodMinimalPlugins, ForestRenderPlugin));
     app.finish();
     app.cleanup();
     let stock = |species: &str| Stock { species: species.into(), age_spread_years: 2.0, ..default() };
@@ -54,7 +54,7 @@ fn move_to(app: &mut App, camera: Entity, at: Transform) {
     *app.world_mut().get_mut::<Transform>(camera).unwrap() = at;
 }
 
-/// A frame with time for the tasks in the background.
+/// A frame with time for background tasks.
 fn frame(app: &mut App) {
     app.update();
     std::thread::sleep(Duration::from_millis(1));
@@ -66,15 +66,15 @@ fn wait_for_trees(app: &mut App) {
         frame(app);
         let world = app.world_mut();
         let complete = world.query::<&ForestCells>().iter(world).all(ForestCells::is_complete);
-        let bare = world.query_filtered::<(), (With<Tree>, Without<Grown>)>().iter(world).count();
-        if complete && bare == 0 && world.query::<&Tree>().iter(world).next().is_some() {
+        let without_model = world.query_filtered::<(), (With<Tree>, Without<Grown>)>().iter(world).count();
+        if complete && without_model == 0 && world.query::<&Tree>().iter(world).next().is_some() {
             return;
         }
     }
-    panic!("the forest did not come about");
+    panic!("the forest was not complete in time");
 }
 
-/// Entities, bytes of the store, and assets.
+/// Numbers of entities, of bytes in the cell store, and of assets.
 fn memory(app: &mut App) -> [usize; 5] {
     let world = app.world_mut();
     let entities = world.query::<Entity>().iter(world).count();
@@ -89,17 +89,17 @@ fn greatest(one: [usize; 5], other: [usize; 5]) -> [usize; 5] {
 }
 
 #[test]
-fn ten_minutes_of_flight_leave_memory_flat() {
+fn memory_stays_flat_in_ten_minutes_of_flight() {
     let (mut app, camera) = forest_app(100.0, 300.0);
     let mut random = Xoshiro256PlusPlus::seed_from_u64(10);
     let mut at = Transform::from_xyz(0.0, 10.0, 0.0);
-    // 20 m/s at eight frames a second, and a leap every minute.
-    let frames_a_minute = 480;
+    // 20 m/s at eight frames per second, and a jump every minute.
+    let frames_per_minute = 480;
     let mut minute = |app: &mut App| {
         let [x, z] = [0; 2].map(|_| random.random_range(-2500.0..2500.0));
         at.translation = Vec3::new(x, 10.0, z);
         let mut most = [0; 5];
-        for _ in 0..frames_a_minute {
+        for _ in 0..frames_per_minute {
             at.rotate_y(random.random_range(-0.1..0.1));
             at.translation += at.forward() * 2.5;
             move_to(app, camera, at);
@@ -118,7 +118,7 @@ fn ten_minutes_of_flight_leave_memory_flat() {
 }
 
 #[test]
-fn a_leap_of_three_kilometres_clears_and_raises_no_more_a_frame_than_it_may() {
+fn jump_of_three_kilometres_keeps_the_budgets_per_frame() {
     let (mut app, camera) = forest_app(150.0, 150.0);
     let of = |app: &mut App| {
         let world = app.world_mut();
@@ -126,42 +126,45 @@ fn a_leap_of_three_kilometres_clears_and_raises_no_more_a_frame_than_it_may() {
         let trees: BTreeSet<Entity> = world.query_filtered::<Entity, With<Tree>>().iter(world).collect();
         (cells, trees)
     };
-    let begun = of(&mut app);
-    let mut before = begun.clone();
+    let first = of(&mut app);
+    let mut before = first.clone();
     move_to(&mut app, camera, Transform::from_xyz(3000.0, 10.0, 0.0));
-    let (mut most_cleared, mut most_raised) = (0, 0);
+    let (mut most_despawned, mut most_spawned) = (0, 0);
     for _ in 0..600 {
         frame(&mut app);
         let now = of(&mut app);
-        most_cleared = most_cleared.max(before.0.difference(&now.0).count());
-        most_raised = most_raised.max(now.1.difference(&before.1).count());
+        most_despawned = most_despawned.max(before.0.difference(&now.0).count());
+        most_spawned = most_spawned.max(now.1.difference(&before.1).count());
         before = now;
     }
     wait_for_trees(&mut app);
-    let ended = of(&mut app);
-    assert!(begun.0.is_disjoint(&ended.0) && begun.1.is_disjoint(&ended.1), "what was near is gone");
-    // Of 32 m: together as much ground as a common cell of 64 m.
-    assert_eq!(most_cleared, 4, "cells that one frame cleared");
-    assert_eq!(most_raised, TREES_PER_FRAME as usize, "trees that one frame raised");
+    let last = of(&mut app);
+    assert!(
+        first.0.is_disjoint(&last.0) && first.1.is_disjoint(&last.1),
+        "cells and trees of the first place are gone"
+    );
+    // Four cells of 32 m have the area of one of 64 m, the default.
+    assert_eq!(most_despawned, 4, "cells despawned in one frame");
+    assert_eq!(most_spawned, TREES_PER_FRAME as usize, "trees spawned in one frame");
 }
 
-/// A cell that stands, whether it is shown, and points of the boxes about its trees.
-struct Standing {
+/// A cell, whether it is visible, and points of the bounds of its trees.
+struct CellState {
     centre_m: Vec3,
-    shown: bool,
+    visible: bool,
     points_m: Vec<Vec3>,
 }
 
-/// Every cell, tree by tree: corners and centre of each tree's box, as it stands there.
-fn standing(app: &mut App) -> Vec<Standing> {
+/// All cells, with corners and centre of the bounds of each tree.
+fn cell_states(app: &mut App) -> Vec<CellState> {
     let world = app.world_mut();
-    let mut cells: BTreeMap<Entity, Standing> = world
+    let mut cells: BTreeMap<Entity, CellState> = world
         .query::<(Entity, &ForestCell, &Visibility)>()
         .iter(world)
         .map(|(entity, cell, visibility)| {
             let centre = (cell.0.as_vec2() + 0.5) * CELL_M;
-            let shown = *visibility != Visibility::Hidden;
-            (entity, Standing { centre_m: Vec3::new(centre.x, 0.0, centre.y), shown, points_m: Vec::new() })
+            let visible = *visibility != Visibility::Hidden;
+            (entity, CellState { centre_m: Vec3::new(centre.x, 0.0, centre.y), visible, points_m: Vec::new() })
         })
         .collect();
     let mut trees = world.query::<(&Grown, &Transform, &ChildOf)>();
@@ -178,15 +181,15 @@ fn standing(app: &mut App) -> Vec<Standing> {
     cells.into_values().collect()
 }
 
-/// What a camera sees, after its projection alone.
-struct Eye {
+/// The view of a camera, by its projection alone.
+struct View {
     at: Transform,
     clip_from_world: Mat4,
 }
 
-impl Eye {
-    /// Moves the camera, lets a frame pass, and looks.
-    fn open(app: &mut App, camera: Entity, at: Transform) -> Self {
+impl View {
+    /// Moves the camera and runs a frame.
+    fn of(app: &mut App, camera: Entity, at: Transform) -> Self {
         move_to(app, camera, at);
         app.update();
         let clip_from_view = app.world().get::<Projection>(camera).unwrap().get_clip_from_view();
@@ -198,35 +201,35 @@ impl Eye {
         clip.w > 0.0 && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && (0.0..=clip.w).contains(&clip.z)
     }
 
-    fn sees_any(&self, cell: &Standing) -> bool {
+    fn sees_any(&self, cell: &CellState) -> bool {
         cell.points_m.iter().any(|point| self.sees(*point))
     }
 
-    /// Whether a shadow on the level ground falls into view.
-    fn sees_shadow(&self, cell: &Standing, light: Vec3) -> bool {
+    /// Whether a shadow of the cell on the level ground is in view.
+    fn sees_shadow(&self, cell: &CellState, light: Vec3) -> bool {
         let shadow = |point: &Vec3| point + light * (point.y.max(0.0) / -light.y);
         let seen = |shadow: Vec3| self.sees(shadow) && shadow.distance(self.at.translation) <= SHADOWS_TO_M;
         cell.points_m.iter().map(shadow).any(seen)
     }
 
-    fn is_far(&self, cell: &Standing) -> bool {
+    fn is_far(&self, cell: &CellState) -> bool {
         cell.centre_m.distance(self.at.translation) > ForestCulling::default().around_m + CELL_M
     }
 
-    /// Far behind the camera, out of the reach of its trees.
-    fn is_behind(&self, cell: &Standing) -> bool {
+    /// Whether a cell and its trees are far behind the camera.
+    fn is_behind(&self, cell: &CellState) -> bool {
         self.is_far(cell) && self.at.forward().dot(cell.centre_m - self.at.translation) < -2.0 * CELL_M
     }
 }
 
-fn somewhere(random: &mut Xoshiro256PlusPlus, turn_rad: f32) -> Transform {
+fn random_view(random: &mut Xoshiro256PlusPlus, turn_rad: f32) -> Transform {
     let [x, z] = [0; 2].map(|_| random.random_range(-40.0..40.0));
     let turn = Quat::from_euler(EulerRot::YXZ, turn_rad, random.random_range(-0.5..0.3), 0.0);
     Transform::from_xyz(x, random.random_range(1.0..40.0), z).with_rotation(turn)
 }
 
 #[test]
-fn no_tree_in_view_is_hidden_and_most_behind_the_camera_are() {
+fn cells_in_view_are_visible_and_most_behind_the_camera_are_hidden() {
     let (mut app, camera) = forest_app(200.0, 200.0);
     let mut random = Xoshiro256PlusPlus::seed_from_u64(11);
     let (mut seen, mut behind, mut hidden_behind) = (0, 0, 0);
@@ -234,27 +237,27 @@ fn no_tree_in_view_is_hidden_and_most_behind_the_camera_are() {
         let turn_rad = random.random_range(0.0..std::f32::consts::TAU);
         let lens = PerspectiveProjection { fov: random.random_range(0.3..1.3), aspect_ratio: 1.7, ..default() };
         *app.world_mut().get_mut::<Projection>(camera).unwrap() = lens.into();
-        let eye = Eye::open(&mut app, camera, somewhere(&mut random, turn_rad));
+        let view = View::of(&mut app, camera, random_view(&mut random, turn_rad));
         for frames in [0, 7, FRAMES_TO_HIDE] {
             (0..frames).for_each(|_| app.update());
-            let cells = standing(&mut app);
-            let in_view: Vec<_> = cells.iter().filter(|cell| eye.sees_any(cell)).collect();
+            let cells = cell_states(&mut app);
+            let in_view: Vec<_> = cells.iter().filter(|cell| view.sees_any(cell)).collect();
             seen += in_view.len();
-            let missing = in_view.iter().filter(|cell| !cell.shown).count();
-            assert_eq!(missing, 0, "cells in view of {:?} that are hidden after {frames} frames", eye.at);
+            let missing = in_view.iter().filter(|cell| !cell.visible).count();
+            assert_eq!(missing, 0, "cells in view of {:?} that are hidden after {frames} frames", view.at);
         }
-        let cells = standing(&mut app);
-        let cells_behind = || cells.iter().filter(|cell| eye.is_behind(cell));
+        let cells = cell_states(&mut app);
+        let cells_behind = || cells.iter().filter(|cell| view.is_behind(cell));
         behind += cells_behind().count();
-        hidden_behind += cells_behind().filter(|cell| !cell.shown).count();
+        hidden_behind += cells_behind().filter(|cell| !cell.visible).count();
     }
-    println!("{seen} cells seen; {hidden_behind} hidden of {behind} behind");
+    println!("{seen} cells in view; {hidden_behind} hidden of {behind} behind");
     assert!(seen > 300 && behind > 300, "{seen} seen, {behind} behind");
     assert!(hidden_behind * 10 >= behind * 9, "{hidden_behind} hidden of {behind} behind");
 }
 
 #[test]
-fn no_tree_whose_shadow_is_in_view_is_hidden_while_there_are_shadows() {
+fn cells_with_a_shadow_in_view_are_visible_while_there_are_shadows() {
     let (mut app, camera) = forest_app(200.0, 200.0);
     let light = Transform::default().looking_to(Vec3::new(0.0, -0.14, -1.0), Vec3::Y);
     let cascades: CascadeShadowConfig =
@@ -265,22 +268,22 @@ fn no_tree_whose_shadow_is_in_view_is_hidden_while_there_are_shadows() {
     let (mut only_shadows, mut hidden_without) = (0, 0);
     for _ in 0..12 {
         let turn_rad = random.random_range(-0.6..0.6);
-        let eye = Eye::open(&mut app, camera, somewhere(&mut random, turn_rad));
+        let view = View::of(&mut app, camera, random_view(&mut random, turn_rad));
         for frames in [0, FRAMES_TO_HIDE] {
             (0..frames).for_each(|_| app.update());
-            let cells = standing(&mut app);
-            let shadowing: Vec<_> = cells.iter().filter(|cell| eye.sees_shadow(cell, *light.forward())).collect();
-            only_shadows += shadowing.iter().filter(|cell| eye.is_far(cell) && !eye.sees_any(cell)).count();
-            let missing = shadowing.iter().filter(|cell| !cell.shown).count();
-            assert_eq!(missing, 0, "cells that throw shadows before {:?} and are hidden", eye.at);
+            let cells = cell_states(&mut app);
+            let shadowing: Vec<_> = cells.iter().filter(|cell| view.sees_shadow(cell, *light.forward())).collect();
+            only_shadows += shadowing.iter().filter(|cell| view.is_far(cell) && !view.sees_any(cell)).count();
+            let missing = shadowing.iter().filter(|cell| !cell.visible).count();
+            assert_eq!(missing, 0, "hidden cells with a shadow in view of {:?}", view.at);
         }
         app.world_mut().get_mut::<DirectionalLight>(sun).unwrap().shadow_maps_enabled = false;
         (0..FRAMES_TO_HIDE).for_each(|_| app.update());
-        let cells = standing(&mut app);
-        let hidden = cells.iter().filter(|cell| !cell.shown && eye.sees_shadow(cell, *light.forward()));
+        let cells = cell_states(&mut app);
+        let hidden = cells.iter().filter(|cell| !cell.visible && view.sees_shadow(cell, *light.forward()));
         hidden_without += hidden.count();
         app.world_mut().get_mut::<DirectionalLight>(sun).unwrap().shadow_maps_enabled = true;
     }
-    println!("{only_shadows} cells of which only shadows are seen; {hidden_without} hidden without them");
+    println!("{only_shadows} cells with only shadows in view; {hidden_without} hidden without shadows");
     assert!(only_shadows > 20 && hidden_without > 10, "{only_shadows} only shadows, {hidden_without} hidden");
 }

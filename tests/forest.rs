@@ -182,6 +182,60 @@ fn a_plan_that_cannot_be_planted_leaves_the_last_good_forest() {
     assert!(!thin.is_empty() && thin.len() < good.len() / 2, "{} of {}", thin.len(), good.len());
 }
 
+/// Every tree: its bits of place, turn and size, and its entity.
+fn entities(app: &mut App) -> std::collections::BTreeMap<[u32; 3], Entity> {
+    let world = app.world_mut();
+    let mut trees = world.query_filtered::<(Entity, &Transform), With<Tree>>();
+    trees.iter(world).map(|(tree, at)| (at.translation.to_array().map(f32::to_bits), tree)).collect()
+}
+
+#[test]
+fn a_changed_plan_keeps_the_trees_that_both_have_and_swaps_the_others() {
+    let (mut app, viewer) = forest_app();
+    look_from(&mut app, viewer, Vec2::ZERO);
+    let before = entities(&mut app);
+    // Nothing grows to the west any more.
+    let mut plans = app.world_mut().resource_mut::<Assets<ForestPlan>>();
+    let id = plans.ids().next().unwrap();
+    plans.get_mut(id).unwrap().areas[0].shape = Shape::Rectangle { min_m: [0.0, -2000.0], max_m: [2000.0; 2] };
+    let mut fewest = before.len();
+    for _ in 0..200 {
+        app.update();
+        std::thread::sleep(std::time::Duration::from_millis(1));
+        fewest = fewest.min(entities(&mut app).len());
+    }
+    let after = entities(&mut app);
+    assert!(after.len() < before.len() * 3 / 4 && fewest == after.len(), "{} to {}", before.len(), after.len());
+    assert!(after.keys().all(|place| f32::from_bits(place[0]) >= 0.0));
+    let kept = after.iter().filter(|(place, tree)| before.get(*place) == Some(*tree)).count();
+    assert_eq!(kept, after.len(), "trees of both plans are the same entities");
+}
+
+#[test]
+fn an_edit_of_the_budget_moves_no_tree() {
+    let (mut app, viewer) = forest_app();
+    look_from(&mut app, viewer, Vec2::ZERO);
+    let before = entities(&mut app);
+    let world = app.world_mut();
+    world.query::<&mut ForestSettings>().single_mut(world).unwrap().trees_per_frame = 7;
+    for _ in 0..60 {
+        app.update();
+        std::thread::sleep(std::time::Duration::from_millis(1));
+        assert_eq!(entities(&mut app), before);
+    }
+}
+
+#[test]
+fn a_removed_forest_leaves_no_trees() {
+    let (mut app, viewer) = forest_app();
+    look_from(&mut app, viewer, Vec2::ZERO);
+    let world = app.world_mut();
+    let forest = world.query_filtered::<Entity, With<Forest>>().single(world).unwrap();
+    world.entity_mut(forest).remove::<Forest>();
+    (0..3).for_each(|_| app.update());
+    assert!(entities(&mut app).is_empty() && app.world().get::<ForestCells>(forest).is_none());
+}
+
 #[test]
 fn a_viewer_who_is_nowhere_is_no_viewer() {
     let (mut app, viewer) = forest_app();

@@ -1,7 +1,7 @@
-//! The motion vectors that the prepass writes are the motion of the wood. Needs a Vulkan driver; Mesa's software one will do.
+//! The motion vectors of the prepass are the motion of the branches. Needs a Vulkan driver. Mesa's software one will do.
 //!
-//! A leafless oak leans in a storm before a still camera. A compute shader reads the prepass's texture back; the processor
-//! poses the same tree now and one frame ago, projects every vertex that faces the camera, and says what should be there.
+//! A leafless oak moves in a storm in front of a still camera. A compute shader reads the texture of the prepass back. The CPU
+//! poses the same tree now and one frame ago and projects every vertex that faces the camera: this is what should be there.
 
 mod support;
 
@@ -17,12 +17,10 @@ use bevy::{
         extract_resource::{ExtractResource, ExtractResourcePlugin},
         render_asset::RenderAssets,
         render_resource::{
-            BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedComputePipelineId,
-            ComputePassDescriptor, ComputePipelineDescriptor, PipelineCache, ShaderStages, TextureFormat,
-            TextureSampleType,
+            BindGroupEntries, BindGroupLayoutEntries, ShaderStages, TextureFormat, TextureSampleType,
             binding_types::{storage_buffer_sized, texture_2d},
         },
-        renderer::{RenderContext, RenderDevice, RenderGraph},
+        renderer::RenderGraph,
         storage::{GpuShaderBuffer, ShaderBuffer},
     },
     shader::Shader,
@@ -32,12 +30,16 @@ use bevy_windwood::{
     tree::{TreeModel, foliage::Foliage, species::Wood},
 };
 use std::time::Duration;
-use support::{ReadBack, floats, headless_app, processor_poses, read_every_frame, render_frame, update_until};
+use support::{
+    ReadBack, cpu_poses, floats, headless_app,
+    probe::{ProbePass, ProbeShader},
+    read_every_frame, render_frame, update_until,
+};
 
 const SIZE: u32 = 512;
-/// Lower wood hardly moves, m.
+/// Height above which branches move enough, m.
 const CROWN_M: f32 = 3.0;
-/// Long, so that the wood moves far.
+/// Time of a frame. It is long, so that branches move far.
 const FRAME: Duration = Duration::from_millis(500);
 
 const READ_SHADER: &str = "
@@ -59,11 +61,8 @@ struct Probe {
     shader: Handle<Shader>,
 }
 
-#[derive(Resource)]
-struct ReadPipeline(BindGroupLayoutDescriptor, CachedComputePipelineId);
-
 #[test]
-fn the_prepass_writes_the_motion_of_the_wood() {
+fn motion_vectors_are_the_motion_of_the_branches() {
     let mut app = headless_app(FRAME, None);
     app.insert_resource(Wind { speed: 26.0, seed: 5, ..default() })
         .add_plugins(ExtractResourcePlugin::<Probe>::default());
@@ -73,7 +72,7 @@ fn the_prepass_writes_the_motion_of_the_wood() {
     app.finish();
     app.cleanup();
 
-    // Without leaves to catch the wind, only limp wood moves far.
+    // Without leaves to catch the wind, only soft wood moves far.
     let wood = Wood { young_modulus_pa: 1.0e8, ..default() };
     let species = Species { wood, foliage: Foliage { first_order: 5, size_m: 0.02, ..default() }, ..default() };
     let species = app.world_mut().resource_mut::<Assets<Species>>().add(species);
@@ -88,8 +87,9 @@ fn the_prepass_writes_the_motion_of_the_wood() {
         (DepthPrepass, MotionVectorPrepass),
         eye,
     ));
-    let ready = |world: &mut World| world.resource::<ActiveSway>().is_settled() && world.get::<Mesh3d>(tree).is_some();
-    assert!(update_until(&mut app, ready), "the tree did not get ready");
+    let ready =
+        |world: &mut World| world.resource::<ActiveSway>().is_settled() && world.get::<TreeMeshes>(tree).is_some();
+    assert!(update_until(&mut app, ready), "the tree was not ready in time");
     let read = install_probe(&mut app);
 
     let grown = app.world().get::<Grown>(tree).expect("the tree is grown").model.clone();
@@ -100,14 +100,14 @@ fn the_prepass_writes_the_motion_of_the_wood() {
         camera.clip_from_view() * eye.to_matrix().inverse()
     };
 
-    // What is read back is some frames old: the clock of each frame is kept beside what came with it.
+    // What is read back is some frames old, so the clock of each frame is kept.
     let mut clocks = Vec::new();
     let mut seen: Vec<(usize, Vec<Vec2>)> = Vec::new();
     for frame in 0..14 {
         clocks.push(*app.world().resource::<WindClock>());
         render_frame(&mut app).expect("the frame is rendered");
         clocks[frame] = *app.world().resource::<WindClock>();
-        if let Some(bytes) = read.lock().expect("nobody panics with it").take() {
+        if let Some(bytes) = read.lock().expect("the lock is not poisoned").take() {
             seen.push((frame, vectors(&bytes)));
         }
     }
@@ -125,7 +125,7 @@ fn the_prepass_writes_the_motion_of_the_wood() {
     assert!(best.median_error < 0.05 * best.median_motion, "{} of {}", best.median_error, best.median_motion);
 }
 
-/// How the texture agrees with the processor, in widths of the picture.
+/// Agreement of the texture with the CPU, in widths of the picture.
 struct Agreement {
     compared: usize,
     median_error: f32,
@@ -133,8 +133,8 @@ struct Agreement {
 }
 
 fn compare(sway: &ActiveSway, model: &TreeModel, clip: Mat4, clock: WindClock, read: &[Vec2]) -> Agreement {
-    let now = processor_poses(sway, model, &Transform::IDENTITY, clock.time_s);
-    let before = processor_poses(sway, model, &Transform::IDENTITY, clock.previous_s);
+    let now = cpu_poses(sway, model, &Transform::IDENTITY, clock.time_s);
+    let before = cpu_poses(sway, model, &Transform::IDENTITY, clock.previous_s);
     let project = |point: Vec3| {
         let ndc = clip.project_point3(point);
         Vec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y)
@@ -181,45 +181,19 @@ fn install_probe(app: &mut App) -> ReadBack {
 }
 
 fn read_motion(
-    mut context: RenderContext,
-    mut commands: Commands,
+    mut pass: ProbePass,
     probe: Option<Res<Probe>>,
-    pipeline: Option<Res<ReadPipeline>>,
     views: Query<&ViewPrepassTextures>,
     buffers: Res<RenderAssets<GpuShaderBuffer>>,
-    device: Res<RenderDevice>,
-    cache: Res<PipelineCache>,
 ) {
     let Some(probe) = probe else { return };
-    let Some(pipeline) = pipeline else {
-        commands.insert_resource(queue_pipeline(&probe, &cache));
-        return;
-    };
-    let Some(compute) = cache.get_compute_pipeline(pipeline.1) else { return };
     let Some(buffer) = buffers.get(&probe.read) else { return };
     let Some(motion) = views.iter().find_map(ViewPrepassTextures::motion_vectors_view) else { return };
-    let layout = cache.get_bind_group_layout(&pipeline.0);
-    let entries = BindGroupEntries::sequential((motion, buffer.buffer.as_entire_buffer_binding()));
-    let group = device.create_bind_group("read motion", &layout, &entries);
-    let descriptor = ComputePassDescriptor { label: Some("read motion"), timestamp_writes: None };
-    let mut pass = context.command_encoder().begin_compute_pass(&descriptor);
-    pass.set_pipeline(compute);
-    pass.set_bind_group(0, &group, &[]);
-    pass.dispatch_workgroups(SIZE.div_ceil(8), SIZE.div_ceil(8), 1);
-}
-
-fn queue_pipeline(probe: &Probe, cache: &PipelineCache) -> ReadPipeline {
     let entries = (texture_2d(TextureSampleType::Float { filterable: false }), storage_buffer_sized(false, None));
-    let layout = BindGroupLayoutDescriptor::new(
-        "read motion",
+    pass.run(
+        ProbeShader { entry_point: "read_motion", shader: &probe.shader, defs: Vec::new() },
         &BindGroupLayoutEntries::sequential(ShaderStages::COMPUTE, entries),
+        &BindGroupEntries::sequential((motion, buffer.buffer.as_entire_buffer_binding())),
+        [SIZE.div_ceil(8); 2],
     );
-    let id = cache.queue_compute_pipeline(ComputePipelineDescriptor {
-        label: Some("read motion".into()),
-        layout: vec![layout.clone()],
-        shader: probe.shader.clone(),
-        entry_point: Some("read_motion".into()),
-        ..default()
-    });
-    ReadPipeline(layout, id)
 }

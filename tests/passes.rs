@@ -1,4 +1,4 @@
-//! The shaders compile for every pass that draws trees. Needs a Vulkan driver; Mesa's software one will do.
+//! The shaders of trees compile for every pass. Needs a Vulkan driver. Mesa's software one will do.
 
 mod support;
 
@@ -17,7 +17,7 @@ use std::time::Duration;
 use support::{headless_app, update_until};
 
 #[test]
-fn main_pass_prepasses_and_shadows_all_compile() {
+fn shaders_of_trees_compile_for_every_pass() {
     let mut app = headless_app(Duration::from_millis(16), None);
     app.finish();
     app.cleanup();
@@ -37,7 +37,7 @@ fn main_pass_prepasses_and_shadows_all_compile() {
         DirectionalLight { shadow_maps_enabled: true, ..default() },
         Transform::from_xyz(1.0, 2.0, 1.0).looking_at(Vec3::ZERO, Vec3::Y),
     ));
-    assert!(update_until(&mut app, |world| world.get::<Mesh3d>(tree).is_some()), "the tree did not get ready");
+    assert!(update_until(&mut app, |world| world.get::<TreeMeshes>(tree).is_some()), "the tree was not ready in time");
     (0..5).for_each(|_| app.update());
 
     let cache = app.sub_app(RenderApp).world().resource::<PipelineCache>();
@@ -45,8 +45,8 @@ fn main_pass_prepasses_and_shadows_all_compile() {
         .pipelines()
         .filter_map(|pipeline| match &pipeline.state {
             CachedPipelineState::Err(error) => Some(error.to_string()),
-            // A shader that imports what is not there waits without a word.
-            CachedPipelineState::Queued => Some("a pipeline waits for ever".into()),
+            // A shader with an import that does not exist stays queued without an error.
+            CachedPipelineState::Queued => Some("a pipeline stays queued".into()),
             _ => None,
         })
         .collect();

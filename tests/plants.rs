@@ -1,8 +1,8 @@
-//! Meadows and fires without rendering: what grows, what is refused, what goes.
+//! Meadows and fires without rendering: how they are built, changed, refused and removed.
 
 use bevy::prelude::*;
 use bevy_windwood::{
-    fire::{Burning, flicker},
+    fire::{Flames, flicker},
     grass::{Meadow, spine},
     prelude::*,
 };
@@ -43,14 +43,14 @@ fn grown(app: &mut App, patch: GrassPatch) -> Entity {
 }
 
 #[test]
-fn a_patch_grows_the_blades_it_asks_for() {
+fn a_patch_gets_the_blades_of_its_sward() {
     let mut app = app();
     let patch = grown(&mut app, lawn(3.0));
     assert_eq!(meadow(&app, patch).blades.len() as u64, lawn(3.0).sward.blades());
 }
 
 #[test]
-fn a_patch_grows_on_its_ground_and_anew_on_other_ground() {
+fn a_patch_is_laid_out_again_on_other_ground() {
     let mut app = app();
     let patch = grown(&mut app, lawn(3.0));
     app.world_mut().entity_mut(patch).insert(GrassGround(Arc::new(|at: Vec2| 2.0 + at.x)));
@@ -61,7 +61,7 @@ fn a_patch_grows_on_its_ground_and_anew_on_other_ground() {
 }
 
 #[test]
-fn a_change_of_the_look_keeps_the_blades_and_one_of_the_sward_does_not() {
+fn a_new_look_keeps_the_blades_and_a_new_sward_does_not() {
     let mut app = app();
     let patch = grown(&mut app, lawn(3.0));
     let before = meadow(&app, patch).blades.clone();
@@ -77,7 +77,7 @@ fn a_change_of_the_look_keeps_the_blades_and_one_of_the_sward_does_not() {
 }
 
 #[test]
-fn a_patch_with_a_value_out_of_range_keeps_its_last_good_meadow() {
+fn a_patch_with_a_setting_out_of_range_keeps_its_meadow() {
     let mut app = app();
     let patch = grown(&mut app, lawn(3.0));
     let before = meadow(&app, patch).clone();
@@ -94,14 +94,14 @@ fn a_patch_with_a_value_out_of_range_keeps_its_last_good_meadow() {
 }
 
 #[test]
-fn grass_that_is_taken_away_is_gone() {
+fn a_removed_patch_has_no_meadow() {
     let mut app = app();
     let (kept, gone) = (grown(&mut app, lawn(3.0)), grown(&mut app, lawn(2.0)));
     app.world_mut().entity_mut(kept).remove::<GrassPatch>();
     app.world_mut().entity_mut(gone).despawn();
     app.update();
     assert!(app.world().get::<Meadow>(kept).is_none() && app.world().get_entity(gone).is_err());
-    // Taken away while it grows.
+    // Removed while it is laid out.
     let sown = app.world_mut().spawn(lawn(4.0)).id();
     app.update();
     app.world_mut().entity_mut(sown).remove::<GrassPatch>();
@@ -113,29 +113,29 @@ fn grass_that_is_taken_away_is_gone() {
 }
 
 #[test]
-fn a_fire_burns_as_it_was_last_good() {
+fn a_fire_with_a_setting_out_of_range_keeps_its_flames() {
     let mut app = app();
     let fire = app.world_mut().spawn(Fire::default()).id();
     app.update();
-    let burning = app.world().get::<Burning>(fire).expect("it burns").clone();
-    assert!(!burning.rhombs.is_empty() && burning.height_m > 0.3);
+    let flames = app.world().get::<Flames>(fire).expect("it burns").clone();
+    assert!(!flames.rhombs.is_empty() && flames.height_m > 0.3);
     app.world_mut().get_mut::<Fire>(fire).expect("it is there").shape.threshold_m = 0.0;
     app.update();
-    let after = app.world().get::<Burning>(fire).expect("it burns on");
-    assert!(Arc::ptr_eq(&burning.rhombs, &after.rhombs) && after.fire == Fire::default());
+    let after = app.world().get::<Flames>(fire).expect("it burns on");
+    assert!(Arc::ptr_eq(&flames.rhombs, &after.rhombs) && after.fire == Fire::default());
     app.world_mut().get_mut::<Fire>(fire).expect("it is there").shape = FireShape { seed: 9, ..default() };
     app.update();
-    assert_ne!(*burning.rhombs, *app.world().get::<Burning>(fire).expect("it burns").rhombs);
+    assert_ne!(*flames.rhombs, *app.world().get::<Flames>(fire).expect("it burns").rhombs);
 }
 
 #[test]
-fn a_fire_that_is_taken_away_goes_out() {
+fn a_removed_fire_has_no_flames() {
     let mut app = app();
     let fire = app.world_mut().spawn(Fire::default()).id();
     app.update();
     app.world_mut().entity_mut(fire).remove::<Fire>();
     app.update();
-    assert!(app.world().get::<Burning>(fire).is_none());
+    assert!(app.world().get::<Flames>(fire).is_none());
 }
 
 /// The numbers of a constant of a shader.
@@ -146,7 +146,7 @@ fn constant(shader: &str, name: &str) -> Vec<f32> {
 }
 
 #[test]
-fn the_shaders_have_the_constants_of_the_code() {
+fn shader_constants_equal_those_in_rust() {
     let blade = include_str!("../src/grass/shaders/blade.wesl");
     assert_eq!(constant(blade, "LINKS"), [spine::LINKS as f32]);
     assert_eq!(constant(blade, "TIP_ANGLE_LIMIT_RAD"), [spine::TIP_ANGLE_LIMIT_RAD]);

@@ -1,5 +1,4 @@
-//! The graphics processor feels the wind and bends blades as the processor does. Needs a Vulkan driver; Mesa's software one
-//! will do.
+//! Wind and bent blades of grass are the same on the GPU and on the CPU. Needs a Vulkan driver. Mesa's software one will do.
 
 mod support;
 
@@ -11,35 +10,38 @@ use bevy::{
         extract_resource::{ExtractResource, ExtractResourcePlugin},
         render_asset::RenderAssets,
         render_resource::{
-            BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedComputePipelineId,
-            ComputePassDescriptor, ComputePipelineDescriptor, PipelineCache, ShaderStages,
+            BindGroupEntries, BindGroupLayoutEntries, ShaderStages,
             binding_types::{storage_buffer_read_only_sized, storage_buffer_sized},
         },
-        renderer::{RenderContext, RenderDevice, RenderGraph},
+        renderer::RenderGraph,
         storage::{GpuShaderBuffer, ShaderBuffer},
     },
     shader::{Shader, ShaderDefVal},
 };
 use bevy_windwood::{
     grass::{
-        blades::{Blade, lay_out},
+        blades::{Blade, layout_blades},
         spine::{LINKS, tip_bend},
     },
     prelude::*,
-    sway::StandTables,
+    render::SwayBuffers,
 };
 use std::time::Duration;
-use support::{ReadBack, floats, headless_app, read_every_frame, render_frame, update_until};
+use support::{
+    ReadBack, floats, headless_app,
+    probe::{ProbePass, ProbeShader},
+    read_every_frame, render_frame, update_until,
+};
 
 const HALF_BEND_SPEED_M_S: f32 = 10.0;
 
-/// A moment that is nothing special.
-const MOMENT_S: f64 = 37.3;
+/// Time of the comparison, s: any will do.
+const TIME_S: f64 = 37.3;
 /// The height of the wind tables, m.
 const TABLE_HEIGHT_M: f32 = 10.0;
 
-/// A blade is three rows: root and length; azimuth, lean, droop; a wind that bends it and a place where the tables' wind is
-/// asked for, both as (x, z). What is written is its joints, and that wind.
+/// A blade is three rows: root and length; azimuth, lean, droop; a wind that bends it and a place at which the wind of the tables
+/// is sampled, both as (x, z). The results are its joints and that wind.
 const BEND_SHADER: &str = "
 import bevy_windwood::{grass::shaders::blade::{Blade, LINKS, joint_at, tip_bend}, render::shaders::wind::velocity_at};
 @group(0) @binding(0) var<storage, read> blades: array<vec4<f32>>;
@@ -67,18 +69,15 @@ fn bend(@builtin(global_invocation_id) id: vec3<u32>) {
 struct Probe {
     blades: Handle<ShaderBuffer>,
     results: Handle<ShaderBuffer>,
-    tables: StandTables,
+    tables: SwayBuffers,
     shader: Handle<Shader>,
     count: u32,
 }
 
-#[derive(Resource)]
-struct BendPipeline(BindGroupLayoutDescriptor, CachedComputePipelineId);
-
 #[test]
-fn winds_and_bent_blades_agree_on_both_processors() {
+fn wind_and_bent_blades_agree_on_gpu_and_cpu() {
     let sward = Sward { width_m: 4.0, depth_m: 4.0, seed: 2, ..default() };
-    let blades = lay_out(&sward, |at| 0.1 * at.x);
+    let blades = layout_blades(&sward, |at| 0.1 * at.x);
     let winds: Vec<Vec2> = (0..blades.len()).map(|k| Vec2::from_angle(k as f32) * (k % 40) as f32).collect();
     // The wind blows along x; between its columns, 8 m apart in z, the two interpolate differently.
     let places: Vec<Vec2> =
@@ -91,12 +90,12 @@ fn winds_and_bent_blades_agree_on_both_processors() {
     app.finish();
     app.cleanup();
     assert!(update_until(&mut app, |world| world.resource::<ActiveSway>().is_settled()), "no wind");
-    *app.world_mut().resource_mut::<WindClock>() = WindClock { time_s: MOMENT_S, previous_s: MOMENT_S };
+    *app.world_mut().resource_mut::<WindClock>() = WindClock { time_s: TIME_S, previous_s: TIME_S };
     let read = install_probe(&mut app, &blades, &winds, &places);
     let mut results = Vec::new();
     for _ in 0..20 {
         render_frame(&mut app).expect("the frame is rendered");
-        if let Some(bytes) = read.lock().expect("nobody panics with it").take() {
+        if let Some(bytes) = read.lock().expect("the lock is not poisoned").take() {
             results = rows(&bytes);
         }
     }
@@ -109,11 +108,11 @@ fn winds_and_bent_blades_agree_on_both_processors() {
         for (here, there) in blade.spine(tip_bend(winds[number], HALF_BEND_SPEED_M_S)).iter().zip(there) {
             bend_error = bend_error.max(here.distance(there.truncate()) / blade.length_m);
         }
-        let felt = active.sample(Vec3::new(place.x, TABLE_HEIGHT_M, place.y), MOMENT_S);
-        wind_error = wind_error.max(felt.distance(there[LINKS + 1].truncate()));
+        let sampled = active.sample(Vec3::new(place.x, TABLE_HEIGHT_M, place.y), TIME_S);
+        wind_error = wind_error.max(sampled.distance(there[LINKS + 1].truncate()));
     }
     assert!(bend_error < 1e-3, "the two bend differently by {bend_error} of a blade's length");
-    // The shader works out the time in 32 bits, to some 1e-4 s, in which gusts change by less than this.
+    // The shader computes the time in 32 bits, to some 1e-4 s. Gusts change by less than this in that time.
     assert!(wind_error < 1e-2, "the two winds differ by {wind_error} m/s");
 }
 
@@ -124,7 +123,7 @@ fn install_probe(app: &mut App, blades: &[Blade], winds: &[Vec2], places: &[Vec2
     });
     let inputs: Vec<Vec4> = inputs.collect();
     let world = app.world_mut();
-    let tables = world.resource::<StandTables>().clone();
+    let tables = world.resource::<SwayBuffers>().clone();
     let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wesl(BEND_SHADER, "bend.wesl"));
     let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
     let inputs = buffers.add(ShaderBuffer::from(inputs));
@@ -143,47 +142,23 @@ fn rows(bytes: &[u8]) -> Vec<Vec4> {
     floats(bytes).chunks_exact(4).map(Vec4::from_slice).collect()
 }
 
-fn bend(
-    mut context: RenderContext,
-    mut commands: Commands,
-    probe: Option<Res<Probe>>,
-    pipeline: Option<Res<BendPipeline>>,
-    buffers: Res<RenderAssets<GpuShaderBuffer>>,
-    device: Res<RenderDevice>,
-    cache: Res<PipelineCache>,
-) {
+fn bend(mut pass: ProbePass, probe: Option<Res<Probe>>, buffers: Res<RenderAssets<GpuShaderBuffer>>) {
     let Some(probe) = probe else { return };
-    let Some(pipeline) = pipeline else {
-        commands.insert_resource(queue_pipeline(&probe, &cache));
-        return;
-    };
-    let Some(compute) = cache.get_compute_pipeline(pipeline.1) else { return };
     let [wind_a, wind_b] = &probe.tables.winds;
     let bound = [&probe.blades, &probe.results, &probe.tables.frame, wind_a, wind_b].map(|handle| buffers.get(handle));
     let [Some(a), Some(b), Some(c), Some(d), Some(e)] = bound else { return };
     let [a, b, c, d, e] = [a, b, c, d, e].map(|buffer| buffer.buffer.as_entire_buffer_binding());
-    let entries = BindGroupEntries::with_indices(((0, a), (1, b), (103, c), (105, d), (106, e)));
-    let group = device.create_bind_group("bend", &cache.get_bind_group_layout(&pipeline.0), &entries);
-    let descriptor = ComputePassDescriptor { label: Some("bend"), timestamp_writes: None };
-    let mut pass = context.command_encoder().begin_compute_pass(&descriptor);
-    pass.set_pipeline(compute);
-    pass.set_bind_group(0, &group, &[]);
-    pass.dispatch_workgroups(probe.count.div_ceil(64), 1, 1);
-}
-
-fn queue_pipeline(probe: &Probe, cache: &PipelineCache) -> BendPipeline {
     let table = || storage_buffer_read_only_sized(false, None);
     let entries =
         ((0, table()), (1, storage_buffer_sized(false, None)), (103, table()), (105, table()), (106, table()));
-    let layout =
-        BindGroupLayoutDescriptor::new("bend", &BindGroupLayoutEntries::with_indices(ShaderStages::COMPUTE, entries));
-    let id = cache.queue_compute_pipeline(ComputePipelineDescriptor {
-        label: Some("bend".into()),
-        layout: vec![layout.clone()],
-        shader: probe.shader.clone(),
-        shader_defs: vec![ShaderDefVal::UInt("MATERIAL_BIND_GROUP".into(), 0)],
-        entry_point: Some("bend".into()),
-        ..default()
-    });
-    BendPipeline(layout, id)
+    pass.run(
+        ProbeShader {
+            entry_point: "bend",
+            shader: &probe.shader,
+            defs: vec![ShaderDefVal::UInt("MATERIAL_BIND_GROUP".into(), 0)],
+        },
+        &BindGroupLayoutEntries::with_indices(ShaderStages::COMPUTE, entries),
+        &BindGroupEntries::with_indices(((0, a), (1, b), (103, c), (105, d), (106, e))),
+        [probe.count.div_ceil(64), 1],
+    );
 }

@@ -1,5 +1,4 @@
-//! The shaders of meadows and fires compile for every pass that draws them. Needs a Vulkan driver; Mesa's software one will
-//! do.
+//! The shaders of grass and fires compile for every pass. Needs a Vulkan driver. Mesa's software one will do.
 
 mod support;
 
@@ -12,7 +11,7 @@ use support::{
 };
 
 #[test]
-fn meadow_and_fire_compile_for_every_pass_and_go_without_a_trace() {
+fn meadow_and_fire_compile_for_every_pass_and_can_be_removed() {
     let mut app = headless_app(Duration::from_millis(16), None);
     let [patch, fire] = draw_meadow(&mut app, true);
     assert_meshes_compile(&app);

@@ -1,6 +1,6 @@
 //! Constants that stand in Rust and in a shader are equal. (Sizes and bits are passed to the shaders as definitions.)
 
-use bevy_windwood::dynamics::pose::{MODE_SHAPE, SLOPE_TIP, TIP_ANGLE_LIMIT};
+use bevy_windwood::dynamics::{MODE_SHAPE, SLOPE_TIP, TIP_ANGLE_LIMIT};
 
 const BEAM: &str = include_str!("../src/render/shaders/beam.wesl");
 

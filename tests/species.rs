@@ -1,6 +1,7 @@
 //! Every species that is shipped, and what becomes of their files when somebody's keyboard slips.
 
-use bevy_windwood::tree::{Species, SpeciesError, TreeModel, foliage::CLUSTERS_LIMIT, growth::reeves::BEAMS_LIMIT};
+use bevy_windwood::tree::{Species, SpeciesError, TreeModel, foliage::CLUSTERS_LIMIT, growth::BEAMS_LIMIT};
+use bevy_windwood::{SettingError, SyntaxError};
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::{fs, path::Path};
 
@@ -96,11 +97,11 @@ fn slips_of_the_keyboard_are_named_or_harmless() {
                     check(&name, &species, species.age.mature_years, 1);
                     grown += 1;
                 }
-                Err(SpeciesError::Syntax { line, .. }) => {
+                Err(SpeciesError::Syntax(SyntaxError { line, .. })) => {
                     assert_eq!(line, text[..from].matches('\n').count() + 1, "{name}: {slip}");
                     refused += 1;
                 }
-                Err(SpeciesError::OutOfRange { field, allowed, .. }) => {
+                Err(SpeciesError::Setting(SettingError { field, allowed, .. })) => {
                     assert!(!field.is_empty() && !allowed.is_empty());
                     refused += 1;
                 }

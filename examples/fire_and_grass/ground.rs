@@ -1,4 +1,4 @@
-//! The ground: a gently rolling meadow with a hearth in it.
+//! The ground: a gently rolling meadow with a fireplace in it.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -7,8 +7,8 @@ use bevy::{
 };
 use noise::{NoiseFn, OpenSimplex};
 
-/// Radius of the bare spot about the fire, m.
-pub const HEARTH_M: f32 = 0.85;
+/// Radius of the bare ground around the fire, m.
+pub const FIREPLACE_M: f32 = 0.85;
 /// How far the ground reaches, m.
 const REACH_M: f32 = 300.0;
 
@@ -16,7 +16,7 @@ const REACH_M: f32 = 300.0;
 pub fn height_m(at: Vec2) -> f32 {
     let noise = OpenSimplex::new(5);
     let octave = |length_m: f32| noise.get([at.x, at.y].map(|c| f64::from(c / length_m))) as f32;
-    // Level at the hearth.
+    // Level at the fireplace.
     let rolling = smooth(1.0, 5.0, at.length()) * (0.12 * octave(4.0) + 0.3 * octave(14.0));
     rolling + 3.0 * smooth(25.0, 120.0, at.length()) * (0.6 + octave(60.0))
 }
@@ -26,12 +26,12 @@ fn smooth(low: f32, high: f32, value: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Where grass stands: not on the hearth.
+/// Height of the ground where grass grows: not in the fireplace.
 pub fn meadow_height_m(at: Vec2) -> f32 {
-    if at.length() < HEARTH_M { f32::NAN } else { height_m(at) }
+    if at.length() < FIREPLACE_M { f32::NAN } else { height_m(at) }
 }
 
-/// One mesh, fine in the middle and ever coarser outwards.
+/// One mesh, finer in the middle than at its edges.
 pub fn mesh() -> Mesh {
     const LINES: usize = 161;
     let line_m = |line: usize| {
@@ -61,7 +61,7 @@ pub fn mesh() -> Mesh {
         .with_inserted_indices(Indices::U32(indices))
 }
 
-/// Earth and moss under the blades; what far blades look like where there are none any more; ash on the hearth.
+/// Earth and moss under the blades, the colour of grass beyond them, ash in the fireplace.
 fn colour(at: Vec2, noise: &OpenSimplex) -> [f32; 4] {
     let octave = |length_m: f32| noise.get([at.x, at.y].map(|c| f64::from(c / length_m))) as f32;
     let mottled = 1.0 + 0.25 * octave(0.9) + 0.2 * octave(7.0);
@@ -69,6 +69,6 @@ fn colour(at: Vec2, noise: &OpenSimplex) -> [f32; 4] {
     let far = Vec3::new(0.075, 0.105, 0.028);
     let ash = Vec3::new(0.035, 0.030, 0.026);
     let meadow = under.lerp(far, smooth(4.0, 18.0, at.length())) * mottled;
-    let colour = ash.lerp(meadow, smooth(0.7 * HEARTH_M, 1.1 * HEARTH_M, at.length()));
+    let colour = ash.lerp(meadow, smooth(0.7 * FIREPLACE_M, 1.1 * FIREPLACE_M, at.length()));
     [colour.x, colour.y, colour.z, 1.0]
 }

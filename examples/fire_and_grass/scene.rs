@@ -1,105 +1,90 @@
-//! Meadow, fire, logs, trees, and the light of dusk.
+//! Meadow, fire, logs and trees.
 
 use crate::{
-    ground,
+    dusk, ground,
     options::{Options, View},
+    support::{options::SceneOptions, scene::Scene},
+    window,
 };
-use bevy::{
-    camera::{Exposure, Hdr},
-    light::{CascadeShadowConfigBuilder, NotShadowCaster, NotShadowReceiver},
-    pbr::{DistanceFog, FogFalloff},
-    prelude::*,
-};
+use bevy::{light::NotShadowCaster, prelude::*};
 use bevy_windwood::prelude::*;
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::{f32::consts::TAU, sync::Arc};
 
-/// What pictures of it are called.
-pub fn name(_: &Options) -> &'static str {
-    "fire_and_grass"
-}
-
 /// What the scene is made from.
 #[derive(Resource)]
-pub struct Setting {
+pub struct MeadowScene {
     pub options: Options,
 }
 
-/// Direction to the sun, which has all but set, behind the trees to the left.
-const SUN: Vec3 = Vec3::new(-0.75, 0.10, -0.62);
-const HAZE: Color = Color::srgb(0.30, 0.29, 0.36);
-const ZENITH: Vec3 = Vec3::new(0.012, 0.024, 0.075);
-const HORIZON: Vec3 = Vec3::new(0.085, 0.095, 0.16);
-/// Of a camera at dusk: the meadow is dim, the flames just burn out at their hearts.
-const EXPOSURE: Exposure = Exposure { ev100: 5.0 };
+impl Scene for MeadowScene {
+    const TITLE: &'static str = "bevy_windwood: fire and grass";
+    const SPEEDS_M_S: [f32; 2] = [4.0, 16.0];
 
-/// The wind blows across the view and a little towards the viewer.
-pub fn wind_direction() -> Dir2 {
-    Dir2::new(Vec2::new(0.93, 0.36)).unwrap_or(Dir2::X)
-}
-
-/// Where the camera stands for a view.
-pub fn camera_transform(setting: &Setting) -> Transform {
-    let (eye, target) = match setting.options.view {
-        View::Fire => (Vec3::new(0.9, 1.15, 5.2), Vec3::new(0.0, 0.72, 0.0)),
-        View::Meadow => (Vec3::new(2.5, 2.3, 9.0), Vec3::new(0.0, 0.2, -4.0)),
-        View::Close => (Vec3::new(0.3, 0.75, 2.2), Vec3::new(0.0, 0.5, 0.0)),
-    };
-    Transform::from_translation(eye).looking_at(target, Vec3::Y)
-}
-
-/// What every camera has: evening mist, and the exposure of the hour.
-pub fn haze() -> impl Bundle {
-    let mist = DistanceFog {
-        color: HAZE,
-        directional_light_color: Color::srgba(1.0, 0.55, 0.25, 0.25),
-        directional_light_exponent: 8.0,
-        falloff: FogFalloff::ExponentialSquared { density: 1.0 / 160.0 },
-    };
-    (Hdr, EXPOSURE, mist)
-}
-
-/// Whether the wind blows and everything is drawn; an error if that will never be.
-pub fn is_ready(world: &mut World, options: &Options) -> Result<bool, String> {
-    let assets = world.resource::<AssetServer>().clone();
-    if let Some(tree) = world.query::<&Tree>().iter(world).find(|tree| assets.load_state(&tree.species).is_failed()) {
-        return Err(format!("{:?} could not be loaded; the reason stands above", tree.species.path()));
+    fn options(&self) -> &SceneOptions {
+        &self.options.scene
     }
-    type Bare<T> = (With<T>, Without<Mesh3d>);
-    let trees = world.query_filtered::<(), Bare<Tree>>().iter(world).count();
-    let patches = world.query_filtered::<(), Bare<GrassPatch>>().iter(world).count();
-    let fires = world.query_filtered::<(), Bare<Fire>>().iter(world).count();
-    let is_planted = options.no_trees || world.query::<&Tree>().iter(world).next().is_some();
-    Ok(is_planted && world.resource::<ActiveSway>().is_ready() && trees + patches + fires == 0)
+
+    /// Across the view and a little towards the viewer.
+    fn wind(&self) -> Wind {
+        let direction = Dir2::new(Vec2::new(0.93, 0.36)).unwrap_or(Dir2::X);
+        Wind { direction, roughness_m: 0.05, gustiness: 1.6, ..default() }
+    }
+
+    fn picture_name(&self) -> &'static str {
+        "fire_and_grass"
+    }
+
+    fn camera_transform(&self) -> Transform {
+        let (eye, target) = match self.options.view {
+            View::Fire => (Vec3::new(0.9, 1.15, 5.2), Vec3::new(0.0, 0.72, 0.0)),
+            View::Meadow => (Vec3::new(2.5, 2.3, 9.0), Vec3::new(0.0, 0.2, -4.0)),
+            View::Close => (Vec3::new(0.3, 0.75, 2.2), Vec3::new(0.0, 0.5, 0.0)),
+        };
+        Transform::from_translation(eye).looking_at(target, Vec3::Y)
+    }
+
+    fn camera_effects() -> impl Bundle {
+        dusk::camera_effects()
+    }
+
+    fn plugin(app: &mut App) {
+        app.add_systems(Startup, spawn_scene);
+    }
+
+    fn window_plugin(app: &mut App) {
+        window::plugin(app);
+    }
+
+    fn is_spawned(&self, world: &mut World) -> Result<bool, String> {
+        Ok(self.options.no_trees || world.query::<&Tree>().iter(world).next().is_some())
+    }
 }
 
 /// Spawns everything but the camera.
-pub fn build(
+fn spawn_scene(
     mut commands: Commands,
-    setting: Res<Setting>,
+    scene: Res<MeadowScene>,
     assets: Res<AssetServer>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    let options = &setting.options;
+    let seed = scene.options.scene.wind.seed;
     let earth = StandardMaterial { perceptual_roughness: 1.0, reflectance: 0.05, ..default() };
     commands.spawn((Mesh3d(meshes.add(ground::mesh())), MeshMaterial3d(materials.add(earth))));
-    spawn_meadow(&mut commands, options.seed);
+    spawn_meadow(&mut commands, seed);
     commands.spawn((
-        Fire {
-            shape: FireShape { seed: options.seed, ..default() },
-            look: FireLook { casts_shadows: true, ..default() },
-        },
+        Fire { shape: FireShape { seed, ..default() }, look: FireLook { casts_shadows: true, ..default() } },
         Transform::from_xyz(0.0, 0.03, 0.0),
     ));
-    spawn_hearth(&mut commands, &mut meshes, &mut materials, options.seed);
-    if !options.no_trees {
+    spawn_fireplace(&mut commands, &mut meshes, &mut materials, seed);
+    if !scene.options.no_trees {
         spawn_trees(&mut commands, &assets);
     }
-    spawn_dusk(&mut commands, &mut meshes, &mut materials);
+    dusk::spawn_light(&mut commands, &mut meshes, &mut materials);
 }
 
-/// A dense patch about the fire and a thin one with broader blades behind it.
+/// Spawns a dense patch around the fire and a sparse one with broader blades behind it.
 fn spawn_meadow(commands: &mut Commands, seed: u64) {
     let tuft = Tuft { shortest_m: 0.10, longest_m: 0.42, narrowest_m: 0.006, widest_m: 0.013, ..default() };
     let near = Sward { width_m: 14.0, depth_m: 11.0, tufts_per_m2: 11.0, tuft: tuft.clone(), seed, ..default() };
@@ -116,8 +101,8 @@ fn spawn_meadow(commands: &mut Commands, seed: u64) {
     }
 }
 
-/// Logs that lean together in the fire, a ring of stones, and two trunks to sit on.
-fn spawn_hearth(
+/// Spawns logs that lean together in the fire, a ring of stones, and two trunks to sit on.
+fn spawn_fireplace(
     commands: &mut Commands,
     meshes: &mut Assets<Mesh>,
     materials: &mut Assets<StandardMaterial>,
@@ -139,7 +124,7 @@ fn spawn_hearth(
             Mesh3d(log.clone()),
             MeshMaterial3d(charred.clone()),
             Transform::from_translation(place).with_rotation(lying),
-            // The light stands among them: their shadows would be all there is.
+            // The light is between them: their shadows would darken everything.
             NotShadowCaster,
         ));
     }
@@ -155,18 +140,19 @@ fn spawn_hearth(
             Transform::from_translation(place).with_rotation(turned).with_scale(size),
         ));
     }
-    let seat = meshes.add(Cylinder::new(0.2, 1.7).mesh().resolution(20));
+    let trunk = meshes.add(Cylinder::new(0.2, 1.7).mesh().resolution(20));
     for (place, turn) in [(Vec2::new(-1.75, -0.35), 1.35), (Vec2::new(1.5, -1.35), -0.75)] {
         let lying = Quat::from_rotation_y(turn) * Quat::from_rotation_z(0.5 * std::f32::consts::PI);
         let at = Vec3::new(place.x, ground::height_m(place) + 0.16, place.y);
         commands.spawn((
-            Mesh3d(seat.clone()),
+            Mesh3d(trunk.clone()),
             MeshMaterial3d(bark.clone()),
             Transform::from_translation(at).with_rotation(lying),
         ));
     }
 }
 
+/// Spawns the trees behind the meadow.
 fn spawn_trees(commands: &mut Commands, assets: &AssetServer) {
     let places = [("oak", -9.5, -15.0, 0.9), ("fir", 8.0, -17.0, 0.75), ("fir", 12.5, -21.0, 0.95)];
     for (species, x, z, scale) in places {
@@ -177,37 +163,4 @@ fn spawn_trees(commands: &mut Commands, assets: &AssetServer) {
             NotShadowCaster,
         ));
     }
-}
-
-fn spawn_dusk(commands: &mut Commands, meshes: &mut Assets<Mesh>, materials: &mut Assets<StandardMaterial>) {
-    let air = StandardMaterial { unlit: true, fog_enabled: false, cull_mode: None, ..default() };
-    commands.spawn((Mesh3d(meshes.add(sky())), MeshMaterial3d(materials.add(air)), NotShadowCaster, NotShadowReceiver));
-    commands.spawn((
-        DirectionalLight { illuminance: 80.0, color: Color::srgb(1.0, 0.62, 0.36), ..default() },
-        CascadeShadowConfigBuilder { num_cascades: 1, maximum_distance: 40.0, ..default() }.build(),
-        Transform::from_translation(SUN).looking_at(Vec3::ZERO, Vec3::Y),
-    ));
-    commands.insert_resource(GlobalAmbientLight { color: Color::srgb(0.70, 0.77, 1.0), brightness: 28.0, ..default() });
-}
-
-/// A dome whose colour goes from the horizon to the zenith, warm where the sun has set.
-fn sky() -> Mesh {
-    let radius = 500.0;
-    let mut dome = Sphere::new(radius).mesh().uv(64, 48);
-    let towards_sun = (SUN * Vec3::new(1.0, 0.0, 1.0)).normalize();
-    let colour = |position: &[f32; 3]| {
-        let direction = Vec3::from_array(*position) / radius;
-        let height = direction.y.max(0.0);
-        let towards = 0.5 + 0.5 * direction.dot(towards_sun);
-        let base = HORIZON.lerp(ZENITH, height.powf(0.5));
-        let afterglow = Vec3::new(0.75, 0.26, 0.07) * (0.8 * towards.powi(5) * (-6.5 * height).exp());
-        let colour = base + afterglow;
-        [colour.x, colour.y, colour.z, 1.0]
-    };
-    let colours: Vec<[f32; 4]> = match dome.attribute(Mesh::ATTRIBUTE_POSITION) {
-        Some(bevy::mesh::VertexAttributeValues::Float32x3(positions)) => positions.iter().map(colour).collect(),
-        _ => Vec::new(),
-    };
-    dome.insert_attribute(Mesh::ATTRIBUTE_COLOR, colours);
-    dome
 }

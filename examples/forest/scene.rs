@@ -1,107 +1,115 @@
 //! Ground, sky, sun and trees.
 
 use crate::{
-    capture,
-    daylight::{self, spawn_daylight},
-    landscape::{FINEST_CELL_M, Landscape},
+    large,
     options::{Options, View},
-    planting, wide,
+    small,
+    support::{
+        daylight::{haze, spawn_daylight},
+        landscape::{FINEST_CELL_M, Landscape},
+        options::SceneOptions,
+        scene::Scene,
+    },
+    window,
 };
-use bevy::{pbr::DistanceFog, prelude::*};
-use bevy_windwood::{prelude::*, scatter::ForestPlan, terrain::TerrainChunks};
-
-/// What pictures of it are called.
-pub fn name(_: &Options) -> &'static str {
-    "forest"
-}
+use bevy::prelude::*;
+use bevy_windwood::{prelude::*, scatter::ForestPlan};
 
 /// What the scene is made from.
 #[derive(Resource)]
-pub struct Setting {
+pub struct ForestScene {
     pub options: Options,
-    pub ground: Landscape,
+    pub landscape: Landscape,
 }
 
-/// The wind blows across the view, a little up the slope.
-pub fn wind_direction(ground: &Landscape) -> Dir2 {
-    let uphill = *ground.uphill();
-    Dir2::new(uphill.perp() + 0.35 * uphill).unwrap_or(Dir2::X)
-}
+impl Scene for ForestScene {
+    const TITLE: &'static str = "bevy_windwood: forest";
+    const SPEEDS_M_S: [f32; 2] = [12.0, 60.0];
 
-/// Where the camera stands for a view.
-pub fn camera_transform(setting: &Setting) -> Transform {
-    let Setting { options, ground } = setting;
-    if options.extent.is_some() {
-        return wide::camera_transform(ground);
+    fn options(&self) -> &SceneOptions {
+        &self.options.scene
     }
-    let uphill = *ground.uphill();
-    let half = planting::half_side_m(options.trees);
-    let on_ground = |at: Vec2, height: f32| Vec3::new(at.x, ground.height_m(at.x, at.y) + height, at.y);
-    let (eye, target) = match options.view {
-        View::Hillside => {
-            let eye = -uphill * (half * 1.12 + 30.0) + uphill.perp() * 0.2 * half;
-            (on_ground(eye, 0.16 * half + 5.0), on_ground(uphill * 0.2 * half, 14.0))
-        }
-        View::Edge => {
-            let eye = -uphill * (half + 17.0);
-            (on_ground(eye, 1.8), on_ground(-uphill * (half - 4.0) + uphill.perp() * 3.0, 6.0))
-        }
-        View::Aerial => (on_ground(-uphill * half * 0.9, 1.1 * half + 20.0), on_ground(Vec2::ZERO, 4.0)),
-    };
-    Transform::from_translation(eye).looking_at(target, Vec3::Y)
-}
 
-/// Clear in the wood, blue on the far ridges.
-pub fn haze() -> DistanceFog {
-    daylight::haze(6500.0)
-}
-
-/// Whether the wind blows and every tree is drawn; an error if that will never be.
-pub fn is_ready(world: &mut World, options: &Options) -> Result<bool, String> {
-    let assets = world.resource::<AssetServer>().clone();
-    if let Some(tree) = world.query::<&Tree>().iter(world).find(|tree| assets.load_state(&tree.species).is_failed()) {
-        return Err(format!("{:?} could not be loaded; the reason stands above", tree.species.path()));
+    /// Across the view, a little up the slope.
+    fn wind(&self) -> Wind {
+        let uphill = *self.landscape.uphill();
+        let direction = Dir2::new(uphill.perp() + 0.35 * uphill).unwrap_or(Dir2::X);
+        Wind { direction, roughness_m: 0.3, ..default() }
     }
-    let bald = world.query_filtered::<(), (With<GrassPatch>, Without<Mesh3d>)>().iter(world).count();
-    let trees = world.query_filtered::<(), With<Tree>>().iter(world).count();
-    let planted = trees > 0 || options.trees == 0;
-    let grounded = world.query::<&TerrainChunks>().iter(world).all(TerrainChunks::is_complete);
-    Ok(world.resource::<ActiveSway>().is_ready()
-        && planted
-        && bald == 0
-        && grounded
-        && capture::forests_are_drawn(world))
+
+    fn picture_name(&self) -> &'static str {
+        "forest"
+    }
+
+    fn camera_transform(&self) -> Transform {
+        let Self { options, landscape } = self;
+        if options.extent.is_some() {
+            return large::camera_transform(landscape);
+        }
+        let uphill = *landscape.uphill();
+        let half_m = small::half_side_m(options.trees);
+        let above = |at: Vec2, height_m: f32| Vec3::new(at.x, landscape.height_m(at.x, at.y) + height_m, at.y);
+        let (eye, target) = match options.view {
+            View::Hillside => {
+                let eye = -uphill * (half_m * 1.12 + 30.0) + uphill.perp() * 0.2 * half_m;
+                (above(eye, 0.16 * half_m + 5.0), above(uphill * 0.2 * half_m, 14.0))
+            }
+            View::Edge => {
+                let eye = -uphill * (half_m + 17.0);
+                (above(eye, 1.8), above(-uphill * (half_m - 4.0) + uphill.perp() * 3.0, 6.0))
+            }
+            View::Aerial => (above(-uphill * half_m * 0.9, 1.1 * half_m + 20.0), above(Vec2::ZERO, 4.0)),
+        };
+        Transform::from_translation(eye).looking_at(target, Vec3::Y)
+    }
+
+    /// Clear among the trees, blue on the far ridges.
+    fn camera_effects() -> impl Bundle {
+        haze(6500.0)
+    }
+
+    fn plugin(app: &mut App) {
+        app.add_systems(Startup, spawn_scene);
+    }
+
+    fn window_plugin(app: &mut App) {
+        window::plugin(app);
+    }
+
+    fn is_spawned(&self, world: &mut World) -> Result<bool, String> {
+        Ok(self.options.trees == 0 || world.query::<&Tree>().iter(world).next().is_some())
+    }
 }
 
 /// Spawns everything but the camera.
-pub fn build(
+fn spawn_scene(
     mut commands: Commands,
-    setting: Res<Setting>,
+    scene: Res<ForestScene>,
     assets: Res<AssetServer>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
     mut plans: ResMut<Assets<ForestPlan>>,
 ) {
-    let Setting { options, ground } = &*setting;
+    let ForestScene { options, landscape } = &*scene;
     let mut cover = None;
     let mut look = GroundLook::default();
     if let Some(extent_m) = options.extent {
-        let plan = wide::plan(options, extent_m);
-        cover = wide::cover(&plan, ground);
-        let settings = wide::settings(options, extent_m);
+        let plan = large::plan(options, extent_m);
+        cover = large::cover(&plan, landscape);
+        let settings = large::settings(options, extent_m);
         look.canopy_from_m = settings.far_to_m.max(settings.trees_to_m);
         commands.spawn((Forest::new(plans.add(plan)), settings));
-        wide::spawn_hamlet(&mut commands, &mut meshes, &mut materials, ground);
+        large::spawn_hamlet(&mut commands, &mut meshes, &mut materials, landscape);
     } else {
-        let places = planting::places(ground, options.trees, options.seed);
-        planting::plant(&mut commands, &assets, &places);
+        let places = small::places(landscape, options.trees, options.scene.wind.seed);
+        small::spawn_trees(&mut commands, &assets, &places);
     }
     let finest_cell_m = FINEST_CELL_M;
     commands.spawn((
-        Terrain { ground: ground.ground.clone(), cover },
+        Terrain { ground: landscape.ground.clone(), cover },
         look,
         TerrainSettings { finest_cell_m, reach_m: 14_000.0, chunks_per_frame: 64, builds_at_once: 64, ..default() },
     ));
-    let sky = (Vec3::Y * ground.height_m(0.0, 0.0), 40_000.0);
+    let sky = (Vec3::Y * landscape.height_m(0.0, 0.0), 40_000.0);
     spawn_daylight(&mut commands, &mut meshes, &mut materials, sky, (55.0, 420.0));
 }

@@ -1,6 +1,6 @@
-//! What the gallery may be told on its command line.
+//! Command-line options of the gallery.
 
-use crate::arguments::{size, wind_speed};
+use crate::support::options::{ImageOptions, WindOptions};
 use bevy::prelude::Resource;
 use bevy_windwood::prelude::*;
 use clap::{Parser, ValueEnum};
@@ -9,31 +9,24 @@ use std::path::{Path, PathBuf};
 /// A gallery of trees.
 #[derive(Parser, Resource, Clone, Debug)]
 #[command(
-    about = "Every species in a lit studio, by season and by age. Writes contact sheets where there is no window."
+    about = "Every species in neutral light, by season and by age. Writes a contact sheet where there is no window.",
+    mut_arg("size", |size| size.default_value("320x320").help("Size of one picture of the sheet, or of the window, pixels")),
+    mut_arg("supersample", |factor| factor.default_value("2")),
+    mut_arg("wind", |speed| speed.default_value("6")),
+    mut_arg("seed", |seed| seed.default_value("0").help("Seed of the trees")),
 )]
 pub struct Options {
-    /// Species to show, as their files are called, separated by commas; all of them by default.
+    /// Species to show, as their files are called, separated by commas. All by default.
     #[arg(long, value_delimiter = ',')]
     pub species: Vec<String>,
     /// What the columns of the sheet are.
     #[arg(long, value_enum, default_value_t = Columns::Seasons)]
     pub columns: Columns,
-    /// Writes a contact sheet instead of opening a window; the default where there is no display.
-    #[arg(long)]
-    pub headless: bool,
-    /// Size of a picture of the sheet, or of the window.
-    #[arg(long, default_value = "320x320", value_parser = size)]
-    pub size: (u32, u32),
-    /// Renders pictures so many times as wide and high and scales them down.
-    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=4))]
-    pub supersample: u32,
-    /// Mean wind speed at 10 m above ground, m/s: 0 to 75.
-    #[arg(long, default_value_t = 6.0, value_parser = wind_speed)]
-    pub wind: f32,
-    /// Chooses the individual.
-    #[arg(long, default_value_t = 0)]
-    pub seed: u64,
-    /// The sheet.
+    #[command(flatten)]
+    pub wind: WindOptions,
+    #[command(flatten)]
+    pub image: ImageOptions,
+    /// File for the sheet.
     #[arg(long, default_value = "out/gallery.png")]
     pub out: PathBuf,
 }
@@ -43,11 +36,11 @@ pub struct Options {
 pub enum Columns {
     /// Winter, spring, summer, autumn.
     Seasons,
-    /// From sapling to old.
+    /// From sapling to old tree.
     Ages,
     /// Whole, crown, trunk.
     Close,
-    /// One summer picture each, species side by side.
+    /// No columns: one summer picture of each species, side by side.
     Summer,
 }
 

@@ -1,19 +1,22 @@
-//! The studio: a meadow-coloured floor, a plain sky, a sun over the right shoulder, and where to look from.
+//! Neutral surroundings: a level green floor, a plain sky, a sun behind the camera to the right, and where to look from.
 
-use bevy::{
-    light::{CascadeShadowConfigBuilder, NotShadowCaster, NotShadowReceiver},
-    prelude::*,
-};
+use crate::support::sky;
+use bevy::{light::CascadeShadowConfigBuilder, prelude::*};
 
 /// Direction to the sun.
 const SUN: Vec3 = Vec3::new(0.65, 0.75, 0.55);
 const HORIZON: Vec3 = Vec3::new(1.45, 1.55, 1.65);
 const ZENITH: Vec3 = Vec3::new(0.55, 0.85, 1.45);
 /// Vertical field of view, rad.
-pub const FIELD_OF_VIEW: f32 = 0.6;
+const FIELD_OF_VIEW_RAD: f32 = 0.6;
 
-/// Builds all that stays.
-pub fn build(
+/// The projection of every camera.
+pub fn projection() -> Projection {
+    Projection::Perspective(PerspectiveProjection { fov: FIELD_OF_VIEW_RAD, far: 2000.0, ..default() })
+}
+
+/// Spawns floor, sky and lights.
+pub fn spawn(
     mut commands: Commands,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
@@ -28,12 +31,8 @@ pub fn build(
         })),
         Transform::from_rotation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2)),
     ));
-    commands.spawn((
-        Mesh3d(meshes.add(sky())),
-        MeshMaterial3d(materials.add(StandardMaterial { unlit: true, cull_mode: None, ..default() })),
-        NotShadowCaster,
-        NotShadowReceiver,
-    ));
+    let dome = sky::dome(900.0, [32, 16], |direction| HORIZON.lerp(ZENITH, direction.y.max(0.0).sqrt()));
+    commands.spawn(sky::bundle(dome, &mut meshes, &mut materials));
     commands.spawn((
         DirectionalLight {
             illuminance: 12_500.0,
@@ -52,50 +51,34 @@ pub fn build(
     commands.insert_resource(bevy::light::DirectionalLightShadowMap { size: 2048 });
 }
 
-fn sky() -> Mesh {
-    let radius = 900.0;
-    let mut dome = Sphere::new(radius).mesh().uv(32, 16);
-    let colour = |position: &[f32; 3]| {
-        let height = (position[1] / radius).max(0.0);
-        let colour = HORIZON.lerp(ZENITH, height.sqrt());
-        [colour.x, colour.y, colour.z, 1.0]
-    };
-    let colours: Vec<[f32; 4]> = match dome.attribute(Mesh::ATTRIBUTE_POSITION) {
-        Some(bevy::mesh::VertexAttributeValues::Float32x3(positions)) => positions.iter().map(colour).collect(),
-        _ => Vec::new(),
-    };
-    dome.insert_attribute(Mesh::ATTRIBUTE_COLOR, colours);
-    dome
-}
-
-/// A way to look at a tree.
+/// What a picture of a tree shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Look {
+pub enum Subject {
     /// All of it.
     Whole,
-    /// Into the crown.
+    /// Its crown from near by.
     Crown,
-    /// At the trunk, at the height of the eyes.
+    /// Its trunk at eye height.
     Trunk,
 }
 
-/// Where the camera stands to see a tree of that height and width (m) in a picture of that aspect ratio.
-pub fn viewpoint(look: Look, height_m: f32, width_m: f32, aspect: f32) -> Transform {
+/// A view of a tree of that height and width (m) in a picture of that aspect ratio.
+pub fn camera_transform(subject: Subject, height_m: f32, width_m: f32, aspect: f32) -> Transform {
     let towards = Vec3::new(0.25, 0.0, 1.0).normalize();
-    match look {
-        Look::Whole => {
+    match subject {
+        Subject::Whole => {
             let extent_m = (1.12 * height_m).max(1.08 * width_m / aspect);
-            let distance_m = 0.5 * extent_m / (0.5 * FIELD_OF_VIEW).tan() + 0.3 * width_m;
+            let distance_m = 0.5 * extent_m / (0.5 * FIELD_OF_VIEW_RAD).tan() + 0.3 * width_m;
             let middle = Vec3::Y * 0.48 * height_m;
             let eye = towards * distance_m + Vec3::Y * (0.25 * height_m).max(0.4);
             Transform::from_translation(eye).looking_at(middle, Vec3::Y)
         }
-        Look::Crown => {
+        Subject::Crown => {
             let middle = Vec3::Y * 0.62 * height_m;
             let eye = middle + towards * (0.5 * width_m + 4.0) - Vec3::Y * 0.12 * height_m;
             Transform::from_translation(eye).looking_at(middle + towards * 0.2 * width_m, Vec3::Y)
         }
-        Look::Trunk => {
+        Subject::Trunk => {
             let eye = towards * 3.4 + Vec3::Y * 1.5;
             Transform::from_translation(eye).looking_at(Vec3::Y * 1.1, Vec3::Y)
         }

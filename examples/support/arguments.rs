@@ -1,6 +1,6 @@
-//! Values on the command line, read and checked: what the examples share.
+//! Parsers that check values of the command line.
 
-// Each of the examples uses a part of it.
+// Each program that includes this file uses a part of it.
 #![allow(dead_code)]
 
 use std::{fmt::Display, str::FromStr};
@@ -13,6 +13,11 @@ pub fn wind_speed(text: &str) -> Result<f32, String> {
 /// A time, s.
 pub fn seconds(text: &str) -> Result<f64, String> {
     in_range(text, 0.0, 1e6, "s")
+}
+
+/// A time of the year.
+pub fn year(text: &str) -> Result<f32, String> {
+    in_range(text, 0.0, 1.0, "of the year")
 }
 
 /// A number in a range.

@@ -1,6 +1,6 @@
-//! Pictures instead of a window: what the examples share.
+//! Rendering to images, without a window.
 
-// Each of the examples uses a part of it.
+// Each program that includes this file uses a part of it.
 #![allow(dead_code)]
 
 use bevy::{
@@ -12,8 +12,9 @@ use bevy::{
     render::{
         RenderPlugin,
         pipelined_rendering::PipelinedRenderingPlugin,
-        render_resource::{PollType, TextureFormat},
+        render_resource::{PollType, TextureFormat, WgpuLimits},
         renderer::RenderDevice,
+        settings::{RenderCreation, WgpuSettings},
         view::screenshot::{Screenshot, ScreenshotCaptured},
     },
     time::TimeUpdateStrategy,
@@ -21,9 +22,9 @@ use bevy::{
     winit::WinitPlugin,
 };
 use bevy_windwood::{
-    forest::{FarBlocks, ForestCells},
+    forest::{ForestCells, ForestImpostors},
     prelude::*,
-    sway::DrawPath,
+    render::RenderCapabilities,
 };
 use image::RgbaImage;
 use std::{
@@ -32,27 +33,36 @@ use std::{
     time::Duration,
 };
 
-/// Bevy with a window of that title and size, or with none.
-pub fn engine(title: &str, (width, height): (u32, u32), headless: bool) -> PluginGroupBuilder {
+/// Far plane of cameras: beyond the horizon of any scene, m.
+pub const FAR_M: f32 = 60_000.0;
+
+/// Bevy with a window of that title and size.
+pub fn engine(title: &str, (width, height): (u32, u32)) -> PluginGroupBuilder {
     let window = Window { title: title.into(), resolution: (width, height).into(), ..default() };
-    let plugins = DefaultPlugins.set(LogPlugin { filter: "wgpu=error,naga=warn".into(), ..default() });
-    if !headless {
-        return plugins.set(WindowPlugin { primary_window: Some(window), ..default() });
-    }
-    plugins
+    DefaultPlugins.set(log()).set(WindowPlugin { primary_window: Some(window), ..default() })
+}
+
+/// Bevy without a window. Each update renders its frame before it returns. The device is held to `limits`.
+pub fn headless_engine(limits: Option<WgpuLimits>) -> PluginGroupBuilder {
+    let settings = WgpuSettings { constrained_limits: limits, ..default() };
+    let render = RenderPlugin {
+        render_creation: RenderCreation::Automatic(Box::new(settings)),
+        synchronous_pipeline_compilation: true,
+        ..default()
+    };
+    DefaultPlugins
+        .set(log())
         .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
-        .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
+        .set(render)
         .disable::<PipelinedRenderingPlugin>()
         .disable::<WinitPlugin>()
 }
 
-/// Whether a window can be opened. Only Linux has machines without a display as a rule.
-pub fn has_display() -> bool {
-    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-    !cfg!(target_os = "linux") || set("DISPLAY") || set("WAYLAND_DISPLAY")
+fn log() -> LogPlugin {
+    LogPlugin { filter: "wgpu=error,naga=warn".into(), ..default() }
 }
 
-/// Makes the app ready to be updated by hand, with its clock standing still.
+/// Finishes the app's plugins, so that it can be updated by hand, and stops its clock.
 ///
 /// # Errors
 /// Where there is no graphics device.
@@ -66,43 +76,53 @@ pub fn begin(app: &mut App) -> Result<(), String> {
     Ok(())
 }
 
-/// A picture that cameras can draw on.
-pub fn canvas(app: &mut App, (width, height): (u32, u32)) -> Handle<Image> {
+/// An image that cameras can render to.
+pub fn target(app: &mut App, (width, height): (u32, u32)) -> Handle<Image> {
     let image = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
     app.world_mut().resource_mut::<Assets<Image>>().add(image)
 }
 
-/// A camera for pictures.
-pub fn camera(target: &Handle<Image>) -> impl Bundle {
+/// A camera that renders to an image.
+pub fn camera(target: &Handle<Image>) -> impl Bundle + use<> {
     // Software Vulkan shades every sample of every small triangle: more pixels are cheaper than more samples.
     (Camera3d::default(), Msaa::Off, DepthPrepass, RenderTarget::Image(target.clone().into()))
 }
 
-/// Whether every forest has all that is wanted from where the viewers are: its trees, their meshes, and its cards.
+/// Whether every forest has all that is wanted from where the viewers are: its trees, their meshes, and its impostors.
 pub fn forests_are_drawn(world: &mut World) -> bool {
-    let draws_cards = world.get_resource::<DrawPath>().is_some_and(|path| path.sways);
-    let mut forests = world.query::<(&ForestSettings, Option<&ForestCells>, Option<&FarBlocks>)>();
-    let all = forests.iter(world).all(|(settings, cells, blocks)| {
-        let has_cards = !draws_cards || settings.far_to_m == 0.0 || blocks.is_some_and(FarBlocks::is_complete);
-        cells.is_some_and(ForestCells::is_complete) && has_cards
+    let draws_impostors = world.get_resource::<RenderCapabilities>().is_some_and(|path| path.sways);
+    let mut forests = world.query::<(&ForestSettings, Option<&ForestCells>, Option<&ForestImpostors>)>();
+    let are_complete = forests.iter(world).all(|(settings, cells, blocks)| {
+        let has_impostors =
+            !draws_impostors || settings.far_to_m == 0.0 || blocks.is_some_and(ForestImpostors::is_complete);
+        cells.is_some_and(ForestCells::is_complete) && has_impostors
     });
-    let bare = world.query_filtered::<(), (With<Tree>, Without<Mesh3d>)>().iter(world).count();
-    all && bare == 0
+    let without_mesh = world.query_filtered::<(), (With<Tree>, Without<TreeMeshes>)>().iter(world).count();
+    are_complete && without_mesh == 0
 }
 
-/// One frame, rendered to the end.
+/// One update, and its frame rendered to the end. A device that fails is warned of.
 pub fn step(app: &mut App) {
-    app.update();
-    let poll = PollType::Wait { submission_index: None, timeout: None };
-    if let Err(error) = app.world().resource::<RenderDevice>().wgpu_device().poll(poll) {
+    if let Err(error) = render_frame(app) {
         warn!("waiting for the frame: {error}");
     }
 }
 
-/// Renders a frame and scales what is on the canvas down to `size`.
+/// One update, and its frame rendered to the end.
 ///
 /// # Errors
-/// If the picture does not come back from the device.
+/// What the device says.
+pub fn render_frame(app: &mut App) -> Result<(), String> {
+    app.update();
+    let poll = PollType::Wait { submission_index: None, timeout: None };
+    let polled = app.world().resource::<RenderDevice>().wgpu_device().poll(poll);
+    polled.map(drop).map_err(|error| error.to_string())
+}
+
+/// Renders a frame and scales the target's image down to `size`.
+///
+/// # Errors
+/// If the image does not come back from the device.
 pub fn capture(app: &mut App, target: &Handle<Image>, (width, height): (u32, u32)) -> Result<RgbaImage, String> {
     let slot: Arc<Mutex<Option<Image>>> = Arc::default();
     let filled = slot.clone();
@@ -120,6 +140,14 @@ pub fn capture(app: &mut App, target: &Handle<Image>, (width, height): (u32, u32
         }
     }
     Err("the picture did not come back from the graphics device".into())
+}
+
+/// Creates a folder and those above it.
+///
+/// # Errors
+/// With the path, if it cannot be created.
+pub fn create_folder(folder: &Path) -> Result<(), String> {
+    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))
 }
 
 /// Writes a PNG.

@@ -1,7 +1,4 @@
-//! The ground of the scenes: a real map, with hills and hummocks that are too small for it.
-
-// Each of the examples uses a part of it.
-#![allow(dead_code)]
+//! The ground of the scenes: a map of real elevations, with random detail below its resolution.
 
 use bevy::{math::DVec2, prelude::*};
 use bevy_windwood::terrain::{
@@ -12,11 +9,11 @@ use std::{path::Path, sync::Arc};
 
 /// The shipped elevations: Rocky Mountain National Park, see `assets/terrain/README.md`.
 const SHIPPED: &[u8] = include_bytes!("../../assets/terrain/rmnp-dem-16bit.png");
-/// Its cells, m.
+/// Size of its cells, m.
 const SHIPPED_CELL_M: DVec2 = DVec2::new(233.0, 234.0);
-/// Where in the shipped map the world's origin lies, as shares of its width and height: a slope by a valley.
+/// Place of the world's origin in the shipped map, as shares of its width and height: a slope by a valley.
 const SHIPPED_PLACE: DVec2 = DVec2::new(0.675, 0.2366);
-/// Finest cells of the ground as it is drawn, m.
+/// Size of the finest cells of the drawn ground, m.
 pub const FINEST_CELL_M: f32 = 2.0;
 
 /// Ground with its origin somewhere in a map.
@@ -47,7 +44,7 @@ impl Landscape {
         let corner_m = -place * size_m;
         let placement = MapPlacement { west_m: corner_m.x, north_m: corner_m.y, interpolation: Interpolation::Bicubic };
         let map = ElevationMap::new(grid, placement).map_err(|error| format!("{name}: {error}"))?;
-        let layers: [Arc<dyn Heightfield>; 3] = [Arc::new(map), hills(0.22 * cell.x)?, hummocks()?];
+        let layers: [Arc<dyn Heightfield>; 3] = [Arc::new(map), hills(0.22 * cell.x)?, bumps()?];
         Ok(Self { ground: Arc::new(Layers(layers.into())), corners_m: [corner_m, corner_m + size_m] })
     }
 
@@ -63,7 +60,7 @@ impl Landscape {
     }
 }
 
-/// Spurs and hollows between the map's samples.
+/// Hills between the samples of the map.
 fn hills(scale_m: f64) -> Result<Arc<dyn Heightfield>, String> {
     bands(TurningBandsSettings {
         model: CovarianceModel::Bessel,
@@ -75,8 +72,8 @@ fn hills(scale_m: f64) -> Result<Arc<dyn Heightfield>, String> {
     })
 }
 
-/// Hummocks that a walker feels.
-fn hummocks() -> Result<Arc<dyn Heightfield>, String> {
+/// Bumps a few metres wide.
+fn bumps() -> Result<Arc<dyn Heightfield>, String> {
     bands(TurningBandsSettings {
         model: CovarianceModel::Bessel,
         scale_m: 6.0,

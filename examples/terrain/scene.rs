@@ -1,80 +1,101 @@
 //! Ground, woods, sky and sun.
 
 use crate::{
-    capture,
-    daylight::{self, spawn_daylight},
-    landscape::{FINEST_CELL_M, Landscape},
     options::{Options, View},
+    support::{
+        daylight::{haze, spawn_daylight},
+        landscape::{FINEST_CELL_M, Landscape},
+        options::SceneOptions,
+        scene::Scene,
+    },
+    window,
 };
-use bevy::{asset::LoadState, math::DVec2, pbr::DistanceFog, prelude::*};
+use bevy::{asset::LoadState, math::DVec2, prelude::*};
 use bevy_windwood::{
     forest::PlanCover,
     prelude::*,
     scatter::{ForestPlan, Planter},
-    terrain::TerrainChunks,
+    terrain::Cover,
 };
-
-/// What pictures of it are called.
-pub fn name(options: &Options) -> &'static str {
-    match options.view {
-        View::Valley => "terrain_valley",
-        View::Summit => "terrain_summit",
-        View::Aerial => "terrain_aerial",
-    }
-}
+use std::sync::Arc;
 
 const PLAN: &str = "forests/rockies.forest.ron";
 
 /// What the scene is made from.
 #[derive(Resource)]
-pub struct Setting {
+pub struct TerrainScene {
     pub options: Options,
-    pub ground: Landscape,
+    pub landscape: Landscape,
 }
 
-/// Where the camera stands for a view: above a place (x, z), looking at a height above another, m.
-pub fn camera_transform(setting: &Setting) -> Transform {
-    let above = |x: f32, z: f32, height_m: f32| Vec3::new(x, setting.ground.height_m(x, z) + height_m, z);
-    let (eye, target) = match setting.options.view {
-        View::Valley => (above(300.0, 556.0, 2.2), above(225.0, 450.0, 11.0)),
-        View::Summit => (above(2300.0, 21_300.0, 6.0), above(1000.0, 22_900.0, -60.0)),
-        View::Aerial => (above(5200.0, 17_500.0, 900.0), above(1180.0, 22_700.0, -500.0)),
-    };
-    Transform::from_translation(eye).looking_at(target, Vec3::Y)
-}
+impl Scene for TerrainScene {
+    const TITLE: &'static str = "bevy_windwood: terrain";
+    const SPEEDS_M_S: [f32; 2] = [20.0, 400.0];
 
-/// Clear for kilometres, and blue at the horizon.
-pub fn haze() -> DistanceFog {
-    daylight::haze(19_000.0)
-}
-
-/// Whether the wind blows, the ground is there and every tree is drawn; an error if that will never be.
-pub fn is_ready(world: &mut World, _: &Options) -> Result<bool, String> {
-    let assets = world.resource::<AssetServer>().clone();
-    let plan = world.query::<&Forest>().iter(world).map(|forest| assets.load_state(&forest.plan)).next();
-    if let Some(LoadState::Failed(error)) = plan {
-        return Err(format!("{PLAN}: {error}"));
+    fn options(&self) -> &SceneOptions {
+        &self.options.scene
     }
-    if let Some(tree) = world.query::<&Tree>().iter(world).find(|tree| assets.load_state(&tree.species).is_failed()) {
-        return Err(format!("{:?} could not be loaded; the reason stands above", tree.species.path()));
+
+    fn wind(&self) -> Wind {
+        Wind { direction: Dir2::X, roughness_m: 0.3, ..default() }
     }
-    let grounded = world.query::<&TerrainChunks>().iter(world).all(TerrainChunks::is_complete);
-    Ok(world.resource::<ActiveSway>().is_ready() && grounded && capture::forests_are_drawn(world))
+
+    fn picture_name(&self) -> &'static str {
+        match self.options.view {
+            View::Valley => "terrain_valley",
+            View::Summit => "terrain_summit",
+            View::Aerial => "terrain_aerial",
+        }
+    }
+
+    fn camera_transform(&self) -> Transform {
+        let above = |x: f32, z: f32, height_m: f32| Vec3::new(x, self.landscape.height_m(x, z) + height_m, z);
+        let (eye, target) = match self.options.view {
+            View::Valley => (above(300.0, 556.0, 2.2), above(225.0, 450.0, 11.0)),
+            View::Summit => (above(2300.0, 21_300.0, 6.0), above(1000.0, 22_900.0, -60.0)),
+            View::Aerial => (above(5200.0, 17_500.0, 900.0), above(1180.0, 22_700.0, -500.0)),
+        };
+        Transform::from_translation(eye).looking_at(target, Vec3::Y)
+    }
+
+    /// Clear for kilometres, and blue at the horizon.
+    fn camera_effects() -> impl Bundle {
+        haze(19_000.0)
+    }
+
+    fn plugin(app: &mut App) {
+        app.add_systems(Startup, spawn_scene);
+    }
+
+    fn window_plugin(app: &mut App) {
+        window::plugin(app);
+    }
+
+    fn is_spawned(&self, world: &mut World) -> Result<bool, String> {
+        let assets = world.resource::<AssetServer>().clone();
+        let plan = world.query::<&Forest>().iter(world).map(|forest| assets.load_state(&forest.plan)).next();
+        match plan {
+            Some(LoadState::Failed(error)) => Err(format!("{PLAN}: {error}")),
+            _ => Ok(true),
+        }
+    }
 }
 
 /// Spawns everything but the camera.
-pub fn build(
+fn spawn_scene(
     mut commands: Commands,
-    setting: Res<Setting>,
+    scene: Res<TerrainScene>,
     assets: Res<AssetServer>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    let Setting { options, ground } = &*setting;
-    // Pictures wait for the ground; a window must not.
-    let (builds_at_once, chunks_per_frame) = if options.headless { (64, 64) } else { (8, 4) };
+    let TerrainScene { options, landscape } = &*scene;
+    let headless = options.scene.image.headless;
+    let forest = options.distances.settings(headless);
+    // Pictures wait for the ground. A window must not.
+    let (builds_at_once, chunks_per_frame) = if headless { (64, 64) } else { (8, 4) };
     commands.spawn((
-        Terrain { ground: ground.ground.clone(), cover: cover(ground) },
+        Terrain { ground: landscape.ground.clone(), cover: cover(landscape) },
         TerrainSettings {
             finest_cell_m: FINEST_CELL_M,
             reach_m: 40_000.0,
@@ -85,33 +106,24 @@ pub fn build(
         GroundLook {
             grass_line_m: 3450.0,
             snow_line_m: 4050.0,
-            canopy_from_m: if options.no_trees { 0.0 } else { options.far_to.max(options.trees_to) },
+            canopy_from_m: if options.no_trees { 0.0 } else { forest.far_to_m.max(forest.trees_to_m) },
             ..default()
         },
     ));
     if !options.no_trees {
-        commands.spawn((
-            Forest::new(assets.load(PLAN)),
-            ForestSettings {
-                trees_to_m: options.trees_to,
-                far_to_m: options.far_to,
-                cells_at_once: if options.headless { 64 } else { 4 },
-                trees_per_frame: if options.headless { 100_000 } else { 64 },
-                ..default()
-            },
-        ));
+        commands.spawn((Forest::new(assets.load(PLAN)), forest));
     }
-    let [from, to] = ground.corners_m.map(DVec2::as_vec2);
+    let [from, to] = landscape.corners_m.map(DVec2::as_vec2);
     let middle = 0.5 * (from + to);
     let sky = (Vec3::new(middle.x, 2500.0, middle.y), 60_000.0);
     spawn_daylight(&mut commands, &mut meshes, &mut materials, sky, (60.0, 600.0));
 }
 
-/// The woods as the ground sees them from afar.
-fn cover(ground: &Landscape) -> Option<std::sync::Arc<dyn bevy_windwood::terrain::Cover>> {
+/// The woods as a colour of the ground, for where no tree is drawn.
+fn cover(landscape: &Landscape) -> Option<Arc<dyn Cover>> {
     let planter = ForestPlan::from_ron(include_str!("../../assets/forests/rockies.forest.ron"))
-        .and_then(|plan| Planter::new(&plan))
+        .and_then(|plan| Ok(Planter::new(&plan)?))
         .inspect_err(|error| error!("{PLAN}: {error}"))
         .ok()?;
-    Some(std::sync::Arc::new(PlanCover::new(planter, ground.ground.clone())))
+    Some(Arc::new(PlanCover::new(planter, landscape.ground.clone())))
 }

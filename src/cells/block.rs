@@ -1,6 +1,6 @@
 //! Squares of 16 x 16 cells: what a store is made of.
 
-use super::cell::{Cell, Spread};
+use super::cell::Cell;
 use bevy::math::IVec2;
 
 /// log₂ of the number of cells along a side: at 64 m a block measures a kilometre.
@@ -9,12 +9,11 @@ const SIDE_BITS: i32 = 4;
 pub(super) const SIDE: i32 = 1 << SIDE_BITS;
 const SLOTS: usize = (SIDE * SIDE) as usize;
 
-/// Cells by their place in the block, row after row, and what they have in common.
+/// Cells by their place in the block, row after row.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     slots: Box<[Option<Cell>; SLOTS]>,
     cells: u16,
-    spread: Spread,
 }
 
 /// The block of a cell.
@@ -31,7 +30,7 @@ impl Block {
     pub(super) const BYTES: usize = size_of::<Self>() + size_of::<[Option<Cell>; SLOTS]>();
 
     pub(super) fn new() -> Self {
-        Self { slots: Box::new([const { None }; SLOTS]), cells: 0, spread: Spread::NOTHING }
+        Self { slots: Box::new([const { None }; SLOTS]), cells: 0 }
     }
 
     pub(super) fn get(&self, cell: IVec2) -> Option<&Cell> {
@@ -40,34 +39,19 @@ impl Block {
 
     /// Puts a cell in and gives back what was there.
     pub(super) fn insert(&mut self, cell: IVec2, content: Cell) -> Option<Cell> {
-        self.spread = self.spread.merge(content.spread());
         let before = self.slots[slot_of(cell)].replace(content);
-        if before.is_some() {
-            self.spread = self.spread_of_cells();
-        } else {
-            self.cells += 1;
-        }
+        self.cells += u16::from(before.is_none());
         before
     }
 
     pub(super) fn remove(&mut self, cell: IVec2) -> Option<Cell> {
         let content = self.slots[slot_of(cell)].take()?;
         self.cells -= 1;
-        self.spread = self.spread_of_cells();
         Some(content)
-    }
-
-    fn spread_of_cells(&self) -> Spread {
-        self.slots.iter().flatten().map(Cell::spread).fold(Spread::NOTHING, Spread::merge)
     }
 
     pub(super) fn is_empty(&self) -> bool {
         self.cells == 0
-    }
-
-    /// How low, how high and how large the plants of all its cells are.
-    pub(super) fn spread(&self) -> Spread {
-        self.spread
     }
 
     /// The block's cells, row after row; `block` is its place.

@@ -1,13 +1,9 @@
 //! Boxes along the axes, and on which side of a plane they are.
 
-use super::{block::SIDE, cell::Spread, view::TreeExtent};
-use bevy::math::{IVec2, Vec2, Vec3, Vec4, Vec4Swizzles};
-
-/// Places are rounded by less than this within 100 km of the origin, m.
-const ROUNDING_M: f32 = 0.02;
+use bevy::math::{Vec3, Vec4, Vec4Swizzles};
 
 /// A length from 0 to `most_m`, m; what is no number is 0.
-pub(super) fn bounded(length_m: f32, most_m: f32) -> f32 {
+pub(super) fn clamped_length(length_m: f32, most_m: f32) -> f32 {
     if length_m > 0.0 { length_m.min(most_m) } else { 0.0 }
 }
 
@@ -19,25 +15,8 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// Of plants that stand in a square, with their crowns.
-    fn of_plants(corner_m: Vec2, side_m: f32, spread: Spread, extent: TreeExtent) -> Self {
-        let reach_m = spread.largest * extent.reach_m + ROUNDING_M;
-        let top_m = spread.highest_m + spread.largest * extent.height_m + ROUNDING_M;
-        let bottom_m = spread.lowest_m - ROUNDING_M;
-        let centre = corner_m + 0.5 * side_m;
-        Self {
-            centre: Vec3::new(centre.x, 0.5 * (bottom_m + top_m), centre.y),
-            half: Vec3::new(0.5 * side_m + reach_m, 0.5 * (top_m - bottom_m), 0.5 * side_m + reach_m),
-        }
-    }
-
-    pub(super) fn of_cell(cell: IVec2, cell_m: f32, spread: Spread, extent: TreeExtent) -> Self {
-        Self::of_plants(cell.as_vec2() * cell_m, cell_m, spread, extent)
-    }
-
-    pub(super) fn of_block(block: IVec2, cell_m: f32, spread: Spread, extent: TreeExtent) -> Self {
-        let side_m = cell_m * SIDE as f32;
-        Self::of_plants(block.as_vec2() * side_m, side_m, spread, extent)
+    pub(super) fn from_min_max(min: Vec3, max: Vec3) -> Self {
+        Self { centre: 0.5 * (min + max), half: 0.5 * (max - min) }
     }
 
     pub(super) fn top_m(&self) -> f32 {
@@ -49,11 +28,9 @@ impl Bounds {
         ((point - self.centre).abs() - self.half).max(Vec3::ZERO).length()
     }
 
-    /// The least and the greatest height of its points over a plane (below 0: behind it).
-    pub(super) fn heights(&self, plane: Vec4) -> [f32; 2] {
-        let middle = plane.xyz().dot(self.centre) + plane.w;
-        let spread = plane.xyz().abs().dot(self.half);
-        [middle - spread, middle + spread]
+    /// The greatest height of its points over a plane (below 0: all of it is behind).
+    pub(super) fn greatest_height(&self, plane: Vec4) -> f32 {
+        plane.xyz().dot(self.centre) + plane.w + plane.xyz().abs().dot(self.half)
     }
 
     /// The box about it and itself moved along `path`.

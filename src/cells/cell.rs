@@ -9,23 +9,23 @@ pub struct Cell {
     records: Box<[[u32; 4]]>,
     /// (Species, number of plants), by species.
     counts: Box<[(u8, u32)]>,
-    spread: Spread,
+    range: PlantRange,
 }
 
 /// How low, how high and how large plants are.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Spread {
-    pub lowest_m: f32,
-    pub highest_m: f32,
+struct PlantRange {
+    lowest_m: f32,
+    highest_m: f32,
     /// Size of the largest, relative to a full-grown individual.
-    pub largest: f32,
+    largest: f32,
 }
 
-impl Spread {
+impl PlantRange {
     /// Of no plants: what is merged with it remains as it is.
-    pub(super) const NOTHING: Self = Self { lowest_m: f32::INFINITY, highest_m: f32::NEG_INFINITY, largest: 0.0 };
+    const NOTHING: Self = Self { lowest_m: f32::INFINITY, highest_m: f32::NEG_INFINITY, largest: 0.0 };
 
-    pub(super) fn merge(self, other: Self) -> Self {
+    fn merge(self, other: Self) -> Self {
         Self {
             lowest_m: self.lowest_m.min(other.lowest_m),
             highest_m: self.highest_m.max(other.highest_m),
@@ -33,7 +33,7 @@ impl Spread {
         }
     }
 
-    pub(super) fn is_nothing(self) -> bool {
+    fn is_nothing(self) -> bool {
         self.lowest_m > self.highest_m
     }
 }
@@ -42,7 +42,7 @@ impl Cell {
     /// Packs plants, of which all stand in the cell with this least corner (x, z) and this side, m.
     pub fn pack(planted: &[Planted], corner_m: DVec2, cell_m: f32) -> Self {
         let mut counts: Vec<(u8, u32)> = Vec::new();
-        let mut spread = Spread::NOTHING;
+        let mut range = PlantRange::NOTHING;
         for plant in planted {
             match counts.binary_search_by_key(&plant.species, |(species, _)| *species) {
                 Ok(found) => counts[found].1 += 1,
@@ -50,12 +50,12 @@ impl Cell {
             }
             let height_m = plant.position.y;
             let largest = plant.size.min(GREATEST_SIZE);
-            spread = spread.merge(Spread { lowest_m: height_m, highest_m: height_m, largest });
+            range = range.merge(PlantRange { lowest_m: height_m, highest_m: height_m, largest });
         }
         Self {
             records: planted.iter().map(|plant| plant.pack(corner_m, cell_m)).collect(),
             counts: counts.into_boxed_slice(),
-            spread,
+            range,
         }
     }
 
@@ -87,16 +87,12 @@ impl Cell {
 
     /// The least and the greatest height at which a plant leaves the ground, m; `None` where nothing stands.
     pub fn ground_m(&self) -> Option<[f32; 2]> {
-        (!self.spread.is_nothing()).then_some([self.spread.lowest_m, self.spread.highest_m])
+        (!self.range.is_nothing()).then_some([self.range.lowest_m, self.range.highest_m])
     }
 
     /// Size of its largest plant, relative to a full-grown individual; 0 where nothing stands.
     pub fn largest(&self) -> f32 {
-        self.spread.largest
-    }
-
-    pub(super) fn spread(&self) -> Spread {
-        self.spread
+        self.range.largest
     }
 
     /// What it has on the heap, bytes.

@@ -1,11 +1,11 @@
-//! Who stands where: the nearest stem, the stems within a radius, and the first trunk on a ray.
+//! Stems by place: the nearest, and all within a radius; and the first trunk on a ray.
 //!
-//! Distances are on the map: a stem is a vertical line. Only the blocks and cells within reach are looked at; a search for
+//! Distances are on the map: a stem is a vertical line. Only the blocks and cells within reach are searched; a search for
 //! the nearest widens its reach step by step until it finds one, so that in a dense forest it looks into a few cells and in
 //! a sparse one not into all.
 
-mod ray;
-mod trunk;
+pub(super) mod ray;
+pub(super) mod trunk;
 
 use super::{
     block::{Block, SIDE},
@@ -13,9 +13,6 @@ use super::{
 };
 use crate::scatter::Stem;
 use bevy::math::{DVec2, IVec2, Vec2};
-
-pub use ray::RayHit;
-pub use trunk::Trunk;
 
 /// A search for the nearest begins with this share of a cell's side.
 const FIRST_REACH: f32 = 0.25;
@@ -35,7 +32,7 @@ pub struct Found {
     pub distance_m: f32,
 }
 
-/// A stem on the way to be found.
+/// A candidate for it.
 #[derive(Clone, Copy)]
 struct Near {
     cell: IVec2,

@@ -1,9 +1,9 @@
 //! The cells of a forest and their plants.
 //!
-//! A store has two storeys: blocks of 16 x 16 cells, dense, in a map that is sorted by row and column. A dense array over
+//! A store has two layers: blocks of 16 x 16 cells, dense, in a map that is sorted by row and column. A dense array over
 //! the whole plan would be quicker to index, but a plan may reach 200 km with cells of 8 m (2.5 GB of empty slots). A hash
 //! map of cells would have no order, and no rows to walk along. With blocks a lookup is one search among few (a hundred at
-//! 10 km), neighbours lie together, rows without anything are skipped, and a whole block falls out of view at once.
+//! 10 km), neighbours lie together, and rows without anything are skipped.
 
 use super::{
     block::{Block, SIDE, block_of},

@@ -6,42 +6,34 @@
 //! each step takes the nearest, those in front of a viewer first. They are kept block by block, and a step looks into a few
 //! blocks only: what it costs hardly grows with the forest.
 
+mod cell_bits;
 mod disc;
-mod marks;
-mod settings;
-mod urgency;
+mod priority;
+pub(super) mod settings;
+pub(super) mod viewer;
 
 use super::{cell::Cell, store::CellStore};
 use crate::setting::SettingError;
 use bevy::{
-    math::{IVec2, Vec2, Vec3, Vec3Swizzles},
+    math::{IVec2, Vec2, Vec3Swizzles},
     platform::collections::HashMap,
 };
+use cell_bits::CellBits;
 use disc::{Disc, any_contains, visit_difference};
-use marks::Marks;
+use priority::Priority;
+use settings::StreamSettings;
 use std::{cmp::Ordering, collections::BTreeSet};
-use urgency::Urgency;
-
-pub use settings::StreamSettings;
+use viewer::ViewerPose;
 
 /// After so much of a cell's side a viewer has moved.
 const STEP: f32 = 0.25;
-/// So many blocks a step looks into: as many as lie in front of a viewer along a ring of 100 cells' radius.
+/// So many blocks a step searches: as many as lie in front of a viewer along a ring of 100 cells' radius.
 const BLOCKS_PER_STEP: usize = 16;
-
-/// Someone who looks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Viewpoint {
-    /// Where the eye is, m.
-    pub eye_m: Vec3,
-    /// Where it looks; its length does not matter, and zero is no direction.
-    pub forward: Vec3,
-}
 
 /// What a step asks for. The buffers are reused.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Orders {
-    /// Cells to plant, most urgent first; each is to be delivered or given back.
+    /// Cells to plant, the first ones first; each is to be delivered or given back.
     pub plant: Vec<IVec2>,
     /// Cells to take out of the store.
     pub drop: Vec<IVec2>,
@@ -86,14 +78,14 @@ pub struct CellStream {
     anchors: Vec<Vec2>,
     load: Vec<Disc>,
     keep: Vec<Disc>,
-    /// All wanted cells that are neither in the store nor ordered, and some that are, which is found out when they are
-    /// looked at.
-    waiting: Marks,
+    /// All wanted cells that are neither in the store nor ordered, and some that are, which is found out when their turn
+    /// comes.
+    waiting: CellBits,
     ordered: BTreeSet<(i32, i32)>,
     /// All cells in the store that no viewer keeps, and some that are not there.
-    leaving: Marks,
-    /// Buffers of a step: who looks, blocks of `waiting`, and the most urgent cells, with their delays.
-    urgency: Urgency,
+    leaving: CellBits,
+    /// Buffers of a step: the viewers, blocks of `waiting`, and the cells to order next, with their delays.
+    priority: Priority,
     blocks: Vec<(f32, IVec2)>,
     next: Vec<(f32, IVec2)>,
 }
@@ -113,10 +105,10 @@ impl CellStream {
             anchors: Vec::new(),
             load: Vec::new(),
             keep: Vec::new(),
-            waiting: Marks::default(),
+            waiting: CellBits::default(),
             ordered: BTreeSet::new(),
-            leaving: Marks::default(),
-            urgency: Urgency::default(),
+            leaving: CellBits::default(),
+            priority: Priority::default(),
             blocks: Vec::new(),
             next: Vec::new(),
         })
@@ -124,20 +116,20 @@ impl CellStream {
 
     /// Follows the viewers for a step, and fills `orders`. The caller removes what is to be dropped from `there` before the
     /// next step. Without viewers, or with one whose eye is nowhere, everything stays as it is.
-    pub fn step(&mut self, viewpoints: &[Viewpoint], there: &impl CellSet, orders: &mut Orders) {
+    pub fn step(&mut self, viewers: &[ViewerPose], there: &impl CellSet, orders: &mut Orders) {
         orders.plant.clear();
         orders.drop.clear();
-        if viewpoints.is_empty() || viewpoints.iter().any(|viewpoint| !viewpoint.eye_m.is_finite()) {
+        if viewers.is_empty() || viewers.iter().any(|viewer| !viewer.eye_m.is_finite()) {
             return;
         }
-        if self.has_moved(viewpoints) {
-            self.follow(viewpoints, there);
+        if self.has_moved(viewers) {
+            self.follow(viewers, there);
         }
-        self.order(viewpoints, there, &mut orders.plant);
+        self.order(viewers, there, &mut orders.plant);
         self.drop(there, &mut orders.drop);
     }
 
-    /// Puts an ordered cell into the store, unless everyone has gone away from it meanwhile. Tells whether it did.
+    /// Puts an ordered cell into the store, unless all viewers have gone away from it meanwhile. Tells whether it did.
     pub fn deliver(&mut self, cell: IVec2, content: Cell, store: &mut CellStore) -> bool {
         let kept = self.fulfil(cell);
         if kept {
@@ -146,20 +138,20 @@ impl CellStream {
         kept
     }
 
-    /// Notes that an order is fulfilled. Tells whether anyone still wants it; if not, the caller throws it away.
+    /// Notes that an order is fulfilled. Tells whether the cell is still wanted; if not, the caller drops it.
     pub fn fulfil(&mut self, cell: IVec2) -> bool {
         self.ordered.remove(&(cell.y, cell.x));
         self.is_in(cell, &self.keep)
     }
 
-    /// Takes an order back that will not be fulfilled; the cell waits again if it is still wanted.
+    /// Takes back an order that will not be fulfilled; the cell waits again if it is still wanted.
     pub fn give_back(&mut self, cell: IVec2) {
         if self.ordered.remove(&(cell.y, cell.x)) && self.is_in(cell, &self.load) {
             self.waiting.insert(cell);
         }
     }
 
-    /// Whether nobody waits for anything: from where the viewers are, all is there that is wanted.
+    /// Whether all is there that is wanted from where the viewers are.
     pub fn is_complete(&self) -> bool {
         !self.anchors.is_empty() && self.waiting.is_empty() && self.ordered.is_empty()
     }
@@ -178,16 +170,16 @@ impl CellStream {
         any_contains(discs, cell, f64::from(self.cell_m))
     }
 
-    fn has_moved(&self, viewpoints: &[Viewpoint]) -> bool {
-        let far = |(anchor, viewpoint): (&Vec2, &Viewpoint)| anchor.distance(viewpoint.eye_m.xz()) > STEP * self.cell_m;
-        self.anchors.len() != viewpoints.len() || self.anchors.iter().zip(viewpoints).any(far)
+    fn has_moved(&self, viewers: &[ViewerPose]) -> bool {
+        let far = |(anchor, viewer): (&Vec2, &ViewerPose)| anchor.distance(viewer.eye_m.xz()) > STEP * self.cell_m;
+        self.anchors.len() != viewers.len() || self.anchors.iter().zip(viewers).any(far)
     }
 
     /// Walks the crescents by which the viewers' discs have changed.
-    fn follow(&mut self, viewpoints: &[Viewpoint], there: &impl CellSet) {
+    fn follow(&mut self, viewers: &[ViewerPose], there: &impl CellSet) {
         let first = self.anchors.is_empty();
         self.anchors.clear();
-        self.anchors.extend(viewpoints.iter().map(|viewpoint| viewpoint.eye_m.xz()));
+        self.anchors.extend(viewers.iter().map(|viewer| viewer.eye_m.xz()));
         let Some(bounds) = self.bounds else { return };
         let load = self.discs(self.settings.load_m);
         let keep = self.discs(self.settings.keep_m);
@@ -213,17 +205,17 @@ impl CellStream {
         self.anchors.iter().map(|anchor| Disc { centre: anchor.as_dvec2(), radius_m }).collect()
     }
 
-    /// Orders the most urgent cells of those that wait.
-    fn order(&mut self, viewpoints: &[Viewpoint], there: &impl CellSet, plant: &mut Vec<IVec2>) {
-        let Self { settings, waiting, ordered, urgency, blocks, next, .. } = self;
+    /// Orders the first of the cells that wait.
+    fn order(&mut self, viewers: &[ViewerPose], there: &impl CellSet, plant: &mut Vec<IVec2>) {
+        let Self { settings, waiting, ordered, priority, blocks, next, .. } = self;
         let room = (settings.most_ordered as usize).saturating_sub(ordered.len());
         let wanted = room.min(settings.plants_per_step as usize);
         if wanted == 0 || waiting.is_empty() {
             return;
         }
-        urgency.look(viewpoints, self.cell_m);
+        priority.follow(viewers, self.cell_m);
         blocks.clear();
-        blocks.extend(waiting.blocks().map(|block| (urgency.delay_of_block(block), block)));
+        blocks.extend(waiting.blocks().map(|block| (priority.delay_of_block(block), block)));
         keep_first(blocks, BLOCKS_PER_STEP);
         blocks.sort_unstable_by(by_delay);
         next.clear();
@@ -233,7 +225,7 @@ impl CellStream {
             }
             waiting.retain(block, |cell| {
                 let waits = !there.contains(cell) && !ordered.contains(&(cell.y, cell.x));
-                next.extend(waits.then(|| (urgency.delay(cell), cell)));
+                next.extend(waits.then(|| (priority.delay(cell), cell)));
                 waits
             });
             keep_first(next, wanted);
@@ -246,7 +238,7 @@ impl CellStream {
         }
     }
 
-    /// Drops cells of those that nobody keeps.
+    /// Drops cells that no viewer keeps.
     fn drop(&mut self, there: &impl CellSet, drop: &mut Vec<IVec2>) {
         for _ in 0..BLOCKS_PER_STEP {
             let most = self.settings.drops_per_step as usize;

@@ -1,4 +1,4 @@
-//! Coefficients of the load basis for every direction of a beam, in a small square of texels.
+//! The coefficients of the load basis for every direction of a beam, in a small square of texels.
 //!
 //! A beam and its reverse are loaded alike, so half the sphere suffices: the upper one, in the hemi-octahedral map.
 //! For a unit direction `d` in wind coordinates (along, up, across):
@@ -16,10 +16,10 @@
 //! (two corners). There is no filtering: a texel is 64 bytes, one line of cache, and the nearest of 129 x 129
 //! texels is at most 1.6 degrees off.
 
-use bevy::math::{Vec2, Vec3};
+use bevy::math::{Vec2, Vec3, Vec4};
 
 /// Number of floats in a texel: four vec4, see [`LoadCoefficients::to_texel`].
-pub const TEXEL_FLOATS: usize = 16;
+pub(crate) const TEXEL_FLOATS: usize = 16;
 
 /// How the load of a beam is put together from the basis signals: `mean + sum of moving[k] * signal[k]`, in m^2/s^2,
 /// in wind coordinates.
@@ -34,7 +34,7 @@ pub struct LoadCoefficients {
 impl LoadCoefficients {
     /// The four vec4 of a texel: `(moving[k].x, moving[k].y, moving[k].z, w_k)` for k = 0..4, where
     /// `(w_0, w_1, w_2)` is the mean and `w_3` is 0.
-    pub fn to_texel(&self) -> [f32; TEXEL_FLOATS] {
+    pub(crate) fn to_texel(self) -> [f32; TEXEL_FLOATS] {
         let w = [self.mean.x, self.mean.y, self.mean.z, 0.0];
         let mut texel = [0.0; TEXEL_FLOATS];
         for (k, (row, moving)) in texel.chunks_exact_mut(4).zip(self.moving).enumerate() {
@@ -44,7 +44,7 @@ impl LoadCoefficients {
     }
 
     /// The inverse of [`to_texel`](Self::to_texel).
-    pub fn from_texel(texel: &[f32; TEXEL_FLOATS]) -> Self {
+    pub(crate) fn from_texel(texel: &[f32; TEXEL_FLOATS]) -> Self {
         Self {
             mean: Vec3::new(texel[3], texel[7], texel[11]),
             moving: std::array::from_fn(|k| Vec3::from_slice(&texel[4 * k..])),
@@ -53,19 +53,19 @@ impl LoadCoefficients {
 
     /// Without the parts along the unit vector `direction`: a load along a beam does not bend it, and the nearest
     /// texel's load is perpendicular to the texel's direction, not quite to the beam's.
-    pub fn perpendicular_to(&self, direction: Vec3) -> Self {
+    pub(crate) fn perpendicular_to(&self, direction: Vec3) -> Self {
         let reject = |load: Vec3| load - load.dot(direction) * direction;
         Self { mean: reject(self.mean), moving: self.moving.map(reject) }
     }
 
     /// The load for the given values of the signals, m^2/s^2.
-    pub fn load(&self, signals: bevy::math::Vec4) -> Vec3 {
+    pub fn load(&self, signals: Vec4) -> Vec3 {
         let [a, b, c, d] = self.moving;
         self.mean + a * signals.x + b * signals.y + c * signals.z + d * signals.w
     }
 }
 
-/// [`LoadCoefficients`] over the directions, ready for the graphics processor.
+/// [`LoadCoefficients`] over the directions, ready for the GPU.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DirectionMap {
     size: usize,
@@ -75,7 +75,7 @@ pub struct DirectionMap {
 impl DirectionMap {
     /// Evaluates `coefficients` at the centres of a square of `size` x `size` texels. An even size is made odd and a
     /// size below 3 is made 3.
-    pub fn new(size: usize, mut coefficients: impl FnMut(Vec3) -> LoadCoefficients) -> Self {
+    pub(crate) fn new(size: usize, mut coefficients: impl FnMut(Vec3) -> LoadCoefficients) -> Self {
         let size = size.max(3) | 1;
         let texels =
             (0..size * size).map(|index| coefficients(texel_direction(index, size)).to_texel()).collect::<Vec<_>>();
@@ -83,7 +83,7 @@ impl DirectionMap {
     }
 
     /// The same map with `2 size - 1` texels a side; those between the given ones are means of their neighbours.
-    pub fn refined(&self) -> Self {
+    pub(crate) fn refined(&self) -> Self {
         let size = 2 * self.size - 1;
         let coarse = |row: usize, column: usize| &self.texels[row * self.size + column];
         let texels = (0..size * size).map(|index| {
@@ -97,31 +97,26 @@ impl DirectionMap {
     }
 
     /// The coefficients of the nearest texel, made perpendicular to `direction`, a unit vector in wind coordinates.
-    pub fn coefficients(&self, direction: Vec3) -> LoadCoefficients {
+    pub(crate) fn coefficients(&self, direction: Vec3) -> LoadCoefficients {
         LoadCoefficients::from_texel(&self.texels[self.texel_index(direction)]).perpendicular_to(direction)
     }
 
     /// Index of the texel nearest to `direction`, a unit vector in wind coordinates; see the [module](self).
     /// A direction that is not finite counts as vertical.
-    pub fn texel_index(&self, direction: Vec3) -> usize {
+    fn texel_index(&self, direction: Vec3) -> usize {
         let square = square_from_direction(direction);
         let place = (square * 0.5 + 0.5) * (self.size - 1) as f32 + 0.5;
         let (column, row) = (place.x as usize, place.y as usize);
         row.min(self.size - 1) * self.size + column.min(self.size - 1)
     }
 
-    /// Direction of a texel's centre, a unit vector in wind coordinates with y >= 0.
-    pub fn texel_direction(&self, index: usize) -> Vec3 {
-        texel_direction(index, self.size)
-    }
-
     /// Texels a side; odd.
-    pub fn size(&self) -> usize {
+    pub(crate) fn size(&self) -> usize {
         self.size
     }
 
     /// The texels row by row, see [`LoadCoefficients::to_texel`].
-    pub fn texels(&self) -> &[[f32; TEXEL_FLOATS]] {
+    pub(crate) fn texels(&self) -> &[[f32; TEXEL_FLOATS]] {
         &self.texels
     }
 }
@@ -142,6 +137,7 @@ fn direction_from_square(square: Vec2) -> Vec3 {
     Vec3::new(point.x, height, point.y).normalize()
 }
 
+/// Direction of a texel's centre, a unit vector in wind coordinates with y >= 0.
 fn texel_direction(index: usize, size: usize) -> Vec3 {
     let place = Vec2::new((index % size) as f32, (index / size) as f32);
     direction_from_square(place * (2.0 / (size - 1) as f32) - 1.0)
@@ -165,10 +161,10 @@ mod tests {
     }
 
     #[test]
-    fn nearest_texel_is_near_for_a_direction_and_its_reverse() {
+    fn nearest_texel_is_within_its_size_of_a_direction_and_its_reverse() {
         let map = DirectionMap::new(129, |_| LoadCoefficients::default());
         for direction in directions() {
-            let texel = map.texel_direction(map.texel_index(direction));
+            let texel = texel_direction(map.texel_index(direction), map.size());
             // Half a texel is 1/128 of the square in u and in v; the map stretches by less than 2.5.
             assert!(texel.cross(direction).length() < 2.5 * 2f32.sqrt() / 128.0, "{direction} found {texel}");
             assert!(map.texel_index(direction) == map.texel_index(-direction) || direction.y == 0.0);
@@ -176,26 +172,26 @@ mod tests {
     }
 
     #[test]
-    fn every_texel_finds_itself() {
+    fn texel_of_a_texels_direction_is_that_texel() {
         let map = DirectionMap::new(9, |_| LoadCoefficients::default());
-        let upward = (0..81).filter(|&index| map.texel_direction(index).y > 1e-6);
+        let upward = (0..81).filter(|&index| texel_direction(index, map.size()).y > 1e-6);
         assert_eq!(upward.clone().count(), 81 - 32);
         for index in upward {
-            assert_eq!(map.texel_index(map.texel_direction(index)), index);
+            assert_eq!(map.texel_index(texel_direction(index, map.size())), index);
         }
     }
 
     #[test]
-    fn trunks_and_the_winds_own_direction_lie_on_centres() {
+    fn axes_lie_on_texel_centres() {
         let map = DirectionMap::new(65, |_| LoadCoefficients::default());
         for axis in [Vec3::Y, Vec3::NEG_Y, Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z] {
-            let texel = map.texel_direction(map.texel_index(axis));
+            let texel = texel_direction(map.texel_index(axis), map.size());
             assert!(texel.cross(axis).length() < 1e-6, "{axis} found {texel}");
         }
     }
 
     #[test]
-    fn texel_and_coefficients_are_two_forms_of_one() {
+    fn texel_and_coefficients_round_trip() {
         let coefficients = any_coefficients(Vec3::new(0.6, 0.0, 0.8));
         let texel = coefficients.to_texel();
         assert_eq!([texel[3], texel[7], texel[11], texel[15]], [0.6, 0.0, 0.8, 0.0]);
@@ -204,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn refining_keeps_the_texels_and_puts_means_between() {
+    fn refined_map_keeps_texels_and_has_means_between_them() {
         let coarse = DirectionMap::new(5, any_coefficients);
         let fine = coarse.refined();
         assert_eq!(fine.size(), 9);
@@ -214,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn loads_along_the_beam_are_left_out() {
+    fn loads_are_perpendicular_to_the_beam() {
         let map = DirectionMap::new(9, any_coefficients);
         for direction in directions() {
             let coefficients = map.coefficients(direction);
@@ -225,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_directions_find_a_texel() {
+    fn any_direction_has_a_texel() {
         let map = DirectionMap::new(0, |_| LoadCoefficients::default());
         assert_eq!(map.size(), 3);
         for direction in [Vec3::ZERO, Vec3::NAN, Vec3::INFINITY, Vec3::new(1e30, -2e30, 0.0)] {

@@ -1,4 +1,4 @@
-//! Leaves: massless plates that turn into the wind and flutter.
+//! Leaves: plates without mass that turn into the wind and flutter.
 //!
 //! The paper (eq. 26 of Setas et al.) moves the spherical angles of a leaf's main axis from rest towards the wind by a
 //! share `k1(u)`, and adds a random part by a share `k2(u)` of a small angle. Angles wrap and the random part, drawn anew
@@ -12,7 +12,8 @@
 //! k1(u)    = turn smoothstep(onset, full, u),   k2(u) = smoothstep(onset/2, full/2, u)
 //! ```
 
-use bevy::math::{Quat, Vec3};
+use crate::setting::SettingError;
+use bevy::math::{FloatExt, Quat, Vec3};
 use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
 use std::f32::consts::TAU;
@@ -20,13 +21,13 @@ use std::f32::consts::TAU;
 /// Frequencies of the three sines of the flutter, relative to the leaf's: no simple ratio, so that it does not look
 /// periodic.
 const FLUTTER_RATIOS: [f32; 3] = [0.618, 1.0, 1.414];
-/// What the phase of each sine, about the first and the second axis, is multiplied by: leaves of different phase
-/// are to share no pattern.
+/// What a leaf's phase is multiplied by for each sine, about the first and the second axis: leaves of different phases
+/// share no pattern.
 const FLUTTER_PHASES: [[f32; 3]; 2] = [[1.0, 7.0, 13.0], [3.0, 11.0, 17.0]];
 /// Below this sine of the angle between rest and wind the axis to turn about is not well defined.
 const PARALLEL: f32 = 1e-4;
 
-/// How a species' leaves answer the wind.
+/// How a species' leaves respond to the wind.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LeafResponse {
@@ -56,22 +57,13 @@ impl Default for LeafResponse {
     }
 }
 
-/// Why leaves cannot answer the wind in this way.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{field} is {value}, but must be {allowed}")]
-pub struct InvalidLeafResponse {
-    /// The field's name.
-    pub field: &'static str,
-    /// Its value.
-    pub value: f32,
-    /// What is allowed.
-    pub allowed: &'static str,
-}
-
 impl LeafResponse {
-    /// This response, if it keeps leaves finite: a share from 0 to 1, and speeds, angle and frequency from 0, the full
-    /// speed above the onset.
-    pub fn validate(self) -> Result<Self, InvalidLeafResponse> {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// The first field outside its domain: a share from 0 to 1, and speeds, angle and frequency from 0, the full speed above
+    /// the onset.
+    pub(crate) fn validate(&self) -> Result<(), SettingError> {
         let onset = self.onset_speed_m_s;
         let checks = [
             ("turn", self.turn, 0.0..=1.0, "0 to 1"),
@@ -81,8 +73,8 @@ impl LeafResponse {
             ("flutter_frequency_hz", self.flutter_frequency_hz, 0.0..=f32::MAX, "at least 0 and finite"),
         ];
         match checks.into_iter().find(|(_, value, allowed, _)| !allowed.contains(value)) {
-            Some((field, value, _, allowed)) => Err(InvalidLeafResponse { field, value, allowed }),
-            None => Ok(self),
+            Some((field, value, _, allowed)) => Err(SettingError::new(field, value, allowed)),
+            None => Ok(()),
         }
     }
 }
@@ -91,11 +83,18 @@ impl LeafResponse {
 ///
 /// `rest_axis` is the unit main axis at rest and `wind` the velocity in m/s, both in the same coordinates. The motion
 /// repeats itself after `period_s`, within which `time_s` lies; `phase` (0 to 1) tells leaves apart.
-pub fn turn(response: &LeafResponse, rest_axis: Vec3, wind: Vec3, time_s: f32, period_s: f32, phase: f32) -> Quat {
+pub(crate) fn turn(
+    response: &LeafResponse,
+    rest_axis: Vec3,
+    wind: Vec3,
+    time_s: f32,
+    period_s: f32,
+    phase: f32,
+) -> Quat {
     let wind = if wind.is_finite() { wind } else { Vec3::ZERO };
     let speed = wind.length();
-    let turned = response.turn * smoothstep(response.onset_speed_m_s, response.full_speed_m_s, speed);
-    let fluttering = smoothstep(0.5 * response.onset_speed_m_s, 0.5 * response.full_speed_m_s, speed);
+    let turned = response.turn * smooth_share(response.onset_speed_m_s, response.full_speed_m_s, speed);
+    let fluttering = smooth_share(0.5 * response.onset_speed_m_s, 0.5 * response.full_speed_m_s, speed);
     let flutter = flutter_vector(response, rest_axis, time_s, period_s, phase) * fluttering;
     turn_towards(rest_axis, wind, turned) * Quat::from_scaled_axis(flutter)
 }
@@ -132,10 +131,9 @@ fn any_normal(axis: Vec3) -> Vec3 {
     axis.cross(helper).normalize_or(Vec3::Z)
 }
 
-/// 0 below `start`, 1 above `end`, and smooth between.
-fn smoothstep(start: f32, end: f32, value: f32) -> f32 {
-    let t = ((value - start) / (end - start).max(f32::EPSILON)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
+/// From 0 at `start` smoothly to 1 at `end`, which may be the same.
+fn smooth_share(start: f32, end: f32, value: f32) -> f32 {
+    ((value - start) / (end - start).max(f32::EPSILON)).smoothstep(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -151,7 +149,7 @@ mod tests {
     };
 
     #[test]
-    fn leaves_stream_with_a_full_wind() {
+    fn leaves_point_along_a_full_wind() {
         let wind = Vec3::new(8.0, -3.0, 9.0);
         for rest in [Vec3::X, Vec3::NEG_Y, wind.normalize(), -wind.normalize()] {
             let axis = turn(&STILL, rest, wind, 1.0, 128.0, 0.3) * rest;
@@ -161,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn leaves_turn_more_in_more_wind() {
+    fn turn_grows_with_the_wind() {
         let angle = |speed: f32| {
             let axis = turn(&STILL, Vec3::Y, Vec3::X * speed, 0.0, 128.0, 0.0) * Vec3::Y;
             axis.angle_between(Vec3::Y)
@@ -173,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn flutter_is_bounded_smooth_and_seamless() {
+    fn flutter_is_bounded_smooth_and_periodic() {
         let response = LeafResponse { turn: 0.0, ..LeafResponse::default() };
         let axis = |time_s: f32| turn(&response, Vec3::Z, Vec3::X * 20.0, time_s, 64.0, 0.37) * Vec3::Z;
         let angles: Vec<f32> = (0..6400).map(|step| axis(step as f32 / 100.0).angle_between(Vec3::Z)).collect();
@@ -189,17 +187,17 @@ mod tests {
     }
 
     #[test]
-    fn leaves_of_different_phase_differ() {
+    fn leaves_of_different_phases_differ() {
         let response = LeafResponse::default();
         let axis = |phase| turn(&response, Vec3::Z, Vec3::X * 20.0, 3.0, 64.0, phase) * Vec3::Z;
         assert!(axis(0.1).distance(axis(0.4)) > 0.01);
     }
 
     #[test]
-    fn bad_responses_are_named() {
-        assert_eq!(STILL.validate(), Ok(STILL));
+    fn settings_outside_their_domain_are_named() {
+        assert_eq!(STILL.validate(), Ok(()));
         let error = LeafResponse { turn: 1.5, ..STILL }.validate().unwrap_err();
-        assert_eq!(error.to_string(), "turn is 1.5, but must be 0 to 1");
+        assert_eq!(error.to_string(), "`turn` is 1.5, but must be 0 to 1");
         for bad in
             [LeafResponse { full_speed_m_s: 2.0, ..STILL }, LeafResponse { flutter_angle_rad: f32::NAN, ..STILL }]
         {
@@ -208,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn calm_is_rest_and_nonsense_is_finite() {
+    fn calm_is_the_rest_pose_and_any_wind_is_finite() {
         let response = LeafResponse::default();
         let rested = turn(&response, Vec3::Y, Vec3::ZERO, 5.0, 64.0, 0.5);
         assert_eq!(rested, Quat::IDENTITY);

@@ -1,4 +1,4 @@
-//! Few signals that stand for the wind's load on a beam of any direction.
+//! Four signals that stand for the wind's load on a beam of any direction.
 //!
 //! The load on a beam depends on its direction `d` through the normal velocity `u_n = u - (u.d) d`; for quadratic drag
 //! it is `q_d(t) = |u_n| u_n` (eq. 15 per unit length, without its constants). Solving each branch's own oscillator
@@ -25,7 +25,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
 /// Number of basis signals: as many as fill one vec4 of the response table.
-pub const BASIS_RANK: usize = 4;
+const BASIS_RANK: usize = 4;
 
 /// Directions whose loads the principal components are taken from, spread evenly over a hemisphere: more
 /// than ten times as many load components as there are signals to be found.
@@ -77,12 +77,12 @@ impl LoadBasis {
     }
 
     /// The basis signals' moving part for one velocity, m/s in wind coordinates.
-    pub fn signals(&self, velocity: Vec3) -> Vec4 {
+    pub(crate) fn signals(&self, velocity: Vec3) -> Vec4 {
         (self.signals)(velocity)
     }
 
     /// The coefficients of a beam's direction, a unit vector in wind coordinates, from the nearest texel: exactly what
-    /// the graphics processor reads.
+    /// the GPU reads.
     pub fn coefficients(&self, direction: Vec3) -> LoadCoefficients {
         self.map.coefficients(direction)
     }
@@ -90,11 +90,6 @@ impl LoadBasis {
     /// The coefficients of all directions.
     pub fn map(&self) -> &DirectionMap {
         &self.map
-    }
-
-    /// Which signals these are.
-    pub fn kind(&self) -> LoadBasisKind {
-        self.kind
     }
 
     fn orthogonal_beams(
@@ -234,7 +229,7 @@ fn regress(signals: &[Vec4], loads: impl Iterator<Item = Vec3>) -> LoadCoefficie
     LoadCoefficients { mean: sum.mean * share, moving: sum.moving.map(|moving| moving * share) }
 }
 
-/// At most `count` of the velocities, evenly spread by the golden section, which keeps no step with the columns' length.
+/// At most `count` of the velocities, evenly spread by the golden section, whose steps never line up with the length of a column.
 fn spread_sample(velocities: &[Vec3], count: usize) -> Vec<Vec3> {
     if velocities.len() <= count {
         return velocities.to_vec();

@@ -1,34 +1,38 @@
-//! How a beam answers a load: pure functions of plain data, without a word of the engine's entities.
+//! How a beam responds to a load: pure functions of plain data, without the engine's entities.
 //!
 //! The path from the wind to a moving branch, after section 3.2 of Setas, Gomes & Rebordão, "Dynamic Simulation of
 //! Natural Environments in Virtual Reality" (equation numbers in this room are that paper's):
 //!
-//! 1. [`cantilever`]: mode shapes, generalised mass, stiffness and load of a branch (18-20, 22, 23);
-//! 2. [`oscillator`]: one mode's equation of motion (21), by the Duhamel integral (24), step by step, and periodic;
-//! 3. [`load_basis`]: four signals that stand for the wind's load on a beam of *any* direction, in place of the three
-//!    orthogonal beams of (25); [`direction_map`] holds each direction's share of them;
-//! 4. [`response`]: what oscillators of some twenty classes of frequency make of these signals, as one table;
-//! 5. [`pose`]: a tree's bent beams, children riding on parents, read from that table;
-//! 6. [`leaf`]: leaves that turn into the wind and flutter (26).
+//! 1. `load_basis`: four signals stand for the wind's load on a beam of *any* direction, in place of the three orthogonal
+//!    beams of (25). `direction_map` holds the coefficients of each direction.
+//! 2. `frequency_classes`: natural frequencies, rounded to some twenty classes.
+//! 3. `response`: the responses of oscillators (21) of each class to these signals, as one table.
+//! 4. `pose`: a tree's bent beams, each attached to its parent, from that table.
+//! 5. `leaf`: leaves that turn into the wind and flutter (26).
+//! 6. `exact_step`: one oscillator, step by step, for motion that is not periodic. Later versions use it for trees that a
+//!    game pushes.
 //!
-//! Steps 1 to 4 happen once for a species or a wind, step 5 and 6 in every frame: since (21) is linear, a branch costs
-//! a few multiplications, whatever its frequency and its place in the tree.
+//! Steps 1 to 3 happen once for a wind, steps 4 and 5 in every frame. Since (21) is linear, a branch costs a few
+//! multiplications, whatever its frequency and its place in the tree. The closed forms that all this is checked against
+//! (18 to 24) are in `oracle`, for tests alone.
 //!
 //! Lengths are in metres, times in seconds. *Wind coordinates* are (along, up, across): along the mean wind, the world's
 //! up, and along x up.
 
-pub mod cantilever;
-pub mod direction_map;
-pub mod leaf;
-pub mod load_basis;
-pub mod oscillator;
-pub mod pose;
-pub mod response;
+pub(crate) mod direction_map;
+mod exact_step;
+pub(crate) mod frequency_classes;
+pub(crate) mod leaf;
+pub(crate) mod load_basis;
+#[cfg(test)]
+mod oracle;
+pub(crate) mod pose;
+pub(crate) mod response;
 
-pub use cantilever::{CantileverMode, TaperedBeam};
 pub use direction_map::{DirectionMap, LoadCoefficients};
+pub use exact_step::{ExactStep, OscillatorState};
+pub use frequency_classes::FrequencyClasses;
 pub use leaf::LeafResponse;
-pub use load_basis::{BASIS_RANK, LoadBasis, LoadBasisKind};
-pub use oscillator::{ExactStep, Oscillator, OscillatorState};
-pub use pose::{BeamDynamics, BeamPose, NO_PARENT, TreePoser};
-pub use response::{FrequencyClasses, ResponseTable};
+pub use load_basis::{LoadBasis, LoadBasisKind};
+pub use pose::{BeamDynamics, BeamPose, MODE_SHAPE, NO_PARENT, SLOPE_TIP, TIP_ANGLE_LIMIT, TreePoser};
+pub use response::ResponseTable;

@@ -1,8 +1,8 @@
-//! The shape of a tree in the wind: each beam bends along its first mode, keeps its length, and carries its children.
+//! The pose of a tree in the wind: each beam bends along its first mode, keeps its length, and moves its children.
 //!
 //! Beam: base `b`, unit direction `d`, length `L`, all at rest and in the tree's own coordinates; `s` runs from 0 at its
 //! root to 1 at its tip. The load `q`, a vector across `d`, moves the tip by `a = g q` lengths (`g` the beam's gain), and
-//! turns it by `Theta = phi_1'(1) a`. In a storm the straight proportion would roll the beam up; it saturates gracefully:
+//! turns it by `Theta = phi_1'(1) a`. In a storm a linear law would roll the beam up, so the angle saturates:
 //!
 //! ```text
 //! Theta = Theta_free / sqrt(1 + |Theta_free|^2 / limit^2)
@@ -19,16 +19,16 @@
 //! ```
 //!
 //! A point bound at `s` turns about the axis with it: `p -> R(s) (p - (b + L s d)) + bent(s)`, with `R(s)` the rotation
-//! about `d x Theta` by `h(s) |Theta|`. A child rides on its parent in the same way, bound where it is attached; so
-//! the pose of a vertex is the product of its ancestors' motions, all in rest coordinates.
+//! about `d x Theta` by `h(s) |Theta|`. A child moves with its parent in the same way, from the point where it is
+//! attached. So the pose of a vertex is the product of its ancestors' motions, all in rest coordinates.
 //!
-//! The hot path has no trigonometry: quaternions come from polynomials in the half angle.
+//! Posing needs no trigonometry: quaternions come from polynomials in the half angle.
 
 use super::direction_map::DirectionMap;
-use super::response::FrequencyClasses;
-use bevy::math::{Quat, Vec3, Vec3A, Vec4};
+use super::frequency_classes::FrequencyClasses;
+use bevy::math::{Mat3, Quat, Vec3, Vec3A, Vec4};
 
-/// The parent of a beam that stands on the ground.
+/// The parent index of a beam that stands on the ground.
 pub const NO_PARENT: u32 = u32::MAX;
 
 /// `phi_1'(1)`, the slope at the tip of the first mode with a tip of 1: the tip's angle for a deflection of one length.
@@ -151,7 +151,7 @@ impl AxisPoint {
 }
 
 /// `h(s)` and `H_1(s)` to `H_6(s)`, see [`MODE_SHAPE`].
-pub fn mode_shape(s: f32) -> [f32; 7] {
+pub(crate) fn mode_shape(s: f32) -> [f32; 7] {
     let mut power = 1.0;
     MODE_SHAPE.map(|[a, b, c, d]| {
         power *= s;
@@ -180,14 +180,14 @@ fn saturate(free: Vec3A) -> Vec3A {
     bounded / (1.0 + bounded.length_squared() * (1.0 / (TIP_ANGLE_LIMIT * TIP_ANGLE_LIMIT))).sqrt()
 }
 
-/// One tree's beams, made ready for one wind: what does not change from frame to frame.
+/// One tree's beams, prepared for one wind: what does not change from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub struct TreePoser {
-    beams: Vec<ReadyBeam>,
+    beams: Vec<PreparedBeam>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct ReadyBeam {
+struct PreparedBeam {
     /// Free tip angle in the mean wind, and for a unit of each signal's response, in rad.
     mean: Vec3A,
     moving: [Vec3A; 4],
@@ -203,7 +203,7 @@ impl TreePoser {
         beams: &[BeamDynamics],
         map: &DirectionMap,
         classes: &FrequencyClasses,
-        to_wind: Quat,
+        to_wind: Mat3,
         scale: f32,
     ) -> Self {
         let mut poser = Self::default();
@@ -211,10 +211,10 @@ impl TreePoser {
         poser
     }
 
-    /// Makes the beams of a tree ready, in place of what was there. To be repeated when the wind's basis or the tree's
+    /// Prepares the beams of a tree, in place of the former ones. To be repeated when the wind's basis or the tree's
     /// orientation changes.
     ///
-    /// `to_wind` rotates the tree's coordinates into the wind's. `scale` is the size of the instance: it makes a
+    /// `to_wind` turns the tree's coordinates into the wind's: a rotation, or one with a mirror image before it. `scale` is the size of the instance: it makes a
     /// tree sway more slowly, and leaves the angles as they are (stiffness grows with its fourth power, as do the load's
     /// moments). A beam with a parent that does not precede it stands on the ground.
     pub fn prepare(
@@ -222,7 +222,7 @@ impl TreePoser {
         beams: &[BeamDynamics],
         map: &DirectionMap,
         classes: &FrequencyClasses,
-        to_wind: Quat,
+        to_wind: Mat3,
         scale: f32,
     ) {
         let shift = classes.shift(scale);
@@ -231,10 +231,10 @@ impl TreePoser {
             let parent = beams[..index].get(beam.parent as usize);
             let coefficients = map.coefficients(to_wind * beam.direction);
             let free_angle = |load: Vec3| {
-                let angle = SLOPE_TIP * beam.gain * (to_wind.inverse() * load);
+                let angle = SLOPE_TIP * beam.gain * (to_wind.transpose() * load);
                 Vec3A::from(if angle.is_finite() { angle } else { Vec3::ZERO })
             };
-            ReadyBeam {
+            PreparedBeam {
                 mean: free_angle(coefficients.mean),
                 moving: coefficients.moving.map(free_angle),
                 attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
@@ -244,11 +244,11 @@ impl TreePoser {
         }));
     }
 
-    /// Beams that are bent once and for all, by a free tip angle in rad across each beam, whatever the wind.
-    pub fn bent(beams: &[BeamDynamics], free_angle: impl Fn(&BeamDynamics) -> Vec3) -> Self {
-        let ready = beams.iter().enumerate().map(|(index, beam)| {
+    /// Beams with a constant bend, by a free tip angle in rad across each beam, in any wind.
+    pub(crate) fn bent(beams: &[BeamDynamics], free_angle: impl Fn(&BeamDynamics) -> Vec3) -> Self {
+        let prepared = beams.iter().enumerate().map(|(index, beam)| {
             let parent = beams[..index].get(beam.parent as usize);
-            ReadyBeam {
+            PreparedBeam {
                 mean: Vec3A::from(free_angle(beam)),
                 moving: [Vec3A::ZERO; 4],
                 attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
@@ -256,7 +256,7 @@ impl TreePoser {
                 parent: if parent.is_some() { beam.parent } else { NO_PARENT },
             }
         });
-        Self { beams: ready.collect() }
+        Self { beams: prepared.collect() }
     }
 
     /// Number of beams.
@@ -271,21 +271,21 @@ impl TreePoser {
 
     /// Adds `weight` times each beam's free tip angle, for [`pose_free`](Self::pose_free): while one wind fades into another,
     /// their loads add up before the beams saturate.
-    pub fn add_free_angles(&self, responses: &[Vec4], weight: f32, free: &mut [Vec3A]) {
+    pub(crate) fn add_free_angles(&self, responses: &[Vec4], weight: f32, free: &mut [Vec3A]) {
         for (beam, free) in self.beams.iter().zip(free) {
             *free += weight * beam.free_angle(response_of(beam, responses));
         }
     }
 
     /// Poses all beams for given free tip angles, one a beam.
-    pub fn pose_free(&self, free: &[Vec3A], out: &mut [BeamPose]) {
+    pub(crate) fn pose_free(&self, free: &[Vec3A], out: &mut [BeamPose]) {
         for (index, (beam, free)) in self.beams.iter().zip(free).enumerate().take(out.len()) {
             out[index] = beam.pose(saturate(*free), out);
         }
     }
 
     /// Poses all beams, for the responses of all classes at the tree's place and time
-    /// ([`ResponseTable::responses`](super::ResponseTable::responses)). A class without a response is at rest in the mean
+    /// ([`ResponseTable::responses`](super::response::ResponseTable::responses)). A class without a response is at rest in the mean
     /// wind. Beams beyond the length of `out` are left out.
     pub fn pose(&self, responses: &[Vec4], out: &mut [BeamPose]) {
         for (index, beam) in self.beams.iter().enumerate().take(out.len()) {
@@ -295,11 +295,11 @@ impl TreePoser {
 }
 
 #[inline]
-fn response_of(beam: &ReadyBeam, responses: &[Vec4]) -> Vec4 {
+fn response_of(beam: &PreparedBeam, responses: &[Vec4]) -> Vec4 {
     responses.get(beam.class as usize).copied().unwrap_or(Vec4::ZERO)
 }
 
-impl ReadyBeam {
+impl PreparedBeam {
     #[inline]
     fn free_angle(&self, response: Vec4) -> Vec3A {
         let [a, b, c, d] = self.moving;
@@ -310,7 +310,7 @@ impl ReadyBeam {
     #[inline]
     fn pose(&self, tip_angle: Vec3A, before: &[BeamPose]) -> BeamPose {
         let (rotation, translation) = match before.get(self.parent as usize) {
-            Some(parent) => self.ride(parent),
+            Some(parent) => self.motion_of_parent(parent),
             None => (Quat::IDENTITY, Vec3A::ZERO),
         };
         BeamPose { tip_angle, rotation, translation }
@@ -318,7 +318,7 @@ impl ReadyBeam {
 
     /// The rigid motion of this beam's rest frame: its parent's own, after the parent's bend where this one is attached.
     #[inline]
-    fn ride(&self, parent: &BeamPose) -> (Quat, Vec3A) {
+    fn motion_of_parent(&self, parent: &BeamPose) -> (Quat, Vec3A) {
         let bend = self.attach.bend(parent.tip_angle);
         let rest = self.attach.rest;
         let moved = parent.rotation * (rest - bend.rotation * rest + bend.displacement);

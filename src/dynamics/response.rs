@@ -1,4 +1,4 @@
-//! What oscillators of every frequency make of the basis signals: one table for all branches of all trees.
+//! The responses of oscillators of every frequency class to the basis signals: one table for all branches of all trees.
 //!
 //! For each class of natural frequency `w_n`, each lateral column of the wind and each sample of its period the table
 //! holds the response to the four basis signals `y_k`, times `w_n^2`: a very stiff class returns the signal itself.
@@ -8,112 +8,29 @@
 //! Y^(w) = w_n^2 / (w_n^2 - w^2 + 2 i xi w_n w)  y^(w)
 //! ```
 //!
-//! Since this transfer function maps real signals to real responses, two signals ride through one complex transform as
-//! its real and imaginary parts.
+//! This transfer function maps real signals to real responses. So two signals go through one complex transform, as its
+//! real and imaginary parts.
 //!
 //! What this leaves out, as relative rms of the moving part at a damping ratio of 0.1 (`validate basis`):
 //!
 //! - The time step bounds the frequencies: a cubic through the samples wants four of them a period, so a step of 1/16 s
 //!   serves oscillations up to 4 Hz. The spline loses 0.2% at 1 Hz, 1% at 2.2 Hz and 3% at 3.3 Hz, the highest class.
 //! - Faster beams are in the last class, which follows the load without inertia (quasi-static). The small resonance that
-//!   it leaves out is 39% of the motion at 5 Hz; the motion's size and sense are the gusts'.
+//!   it leaves out is 39% of the motion at 5 Hz; the size and direction of the motion are those of the gusts.
 //! - Rounding to a class moves a beam's frequency by up to 10%, less than the natural spread of wood's stiffness, and so
 //!   shifts the phase of its sway: 22% from the motion of the exact frequency in the median, though equal in its
 //!   statistics.
 
-use super::load_basis::LoadBasis;
+use super::{frequency_classes::FrequencyClasses, load_basis::LoadBasis};
+use crate::interpolation::catmull_rom;
 use bevy::math::{Vec3, Vec4};
-use bevy::reflect::Reflect;
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
-use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// The least damping ratio of the table: an undamped oscillator has no steady state.
-pub const LEAST_DAMPING_RATIO: f32 = 1e-3;
-
-/// Natural frequencies in steps of equal ratio, rounded to the nearest.
-///
-/// Class `i` has the frequency `lowest_hz * ratio^i`; the last of the `count` classes stands for all higher frequencies
-/// and is quasi-static.
-#[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
-pub struct FrequencyClasses {
-    /// Frequency of class 0, in Hz. Slower beams count as of this class.
-    pub lowest_hz: f32,
-    /// Ratio of neighbouring classes, above 1. 1.22 keeps the rounding within 10%, less than the natural spread of
-    /// wood's stiffness.
-    pub ratio: f32,
-    /// Number of classes, the quasi-static one included. At least 1.
-    pub count: usize,
-}
-
-impl Default for FrequencyClasses {
-    /// 0.05 Hz (a great tree) to 4 Hz, the most that samples of 1/16 s can show, in steps of +-10%, and the
-    /// quasi-static class.
-    fn default() -> Self {
-        Self { lowest_hz: 0.05, ratio: 1.22, count: 23 }
-    }
-}
-
-/// Why frequency classes cannot be used.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum FrequencyClassesError {
-    /// The lowest frequency is not a positive number.
-    #[error("lowest_hz is {0}, but must be above 0")]
-    LowestFrequency(f32),
-    /// The ratio is not a number above 1.
-    #[error("ratio is {0}, but must be above 1")]
-    Ratio(f32),
-    /// There is no class.
-    #[error("count is 0, but must be at least 1")]
-    Count,
-}
-
-impl FrequencyClasses {
-    /// These classes, if they can be used.
-    pub fn validate(self) -> Result<Self, FrequencyClassesError> {
-        if !(self.lowest_hz > 0.0 && self.lowest_hz.is_finite()) {
-            Err(FrequencyClassesError::LowestFrequency(self.lowest_hz))
-        } else if !(self.ratio > 1.0 && self.ratio.is_finite()) {
-            Err(FrequencyClassesError::Ratio(self.ratio))
-        } else if self.count == 0 {
-            Err(FrequencyClassesError::Count)
-        } else {
-            Ok(self)
-        }
-    }
-
-    /// Index of the last class, the quasi-static one.
-    pub fn quasi_static(&self) -> usize {
-        self.count.max(1) - 1
-    }
-
-    /// Place of a natural frequency on the scale of classes, not rounded. A frequency that is not a positive number
-    /// counts as quasi-static.
-    pub fn coordinate(&self, frequency_hz: f32) -> f32 {
-        let coordinate = (frequency_hz / self.lowest_hz).ln() / self.ratio.ln();
-        if coordinate.is_finite() { coordinate } else { self.quasi_static() as f32 }
-    }
-
-    /// What an instance's scale adds to its beams' coordinates: a tree `scale` times as large sways as many times more
-    /// slowly. A scale that is not a positive number adds nothing.
-    pub fn shift(&self, scale: f32) -> f32 {
-        let shift = -scale.ln() / self.ratio.ln();
-        if shift.is_finite() { shift } else { 0.0 }
-    }
-
-    /// The class nearest to a coordinate. NaN counts as quasi-static.
-    pub fn nearest(&self, coordinate: f32) -> usize {
-        let last = self.quasi_static();
-        if coordinate < last as f32 { ((coordinate + 0.5).max(0.0) as usize).min(last) } else { last }
-    }
-
-    /// Natural frequency of a class in Hz; infinite for the quasi-static one.
-    pub fn frequency_hz(&self, class: usize) -> f32 {
-        if class < self.quasi_static() { self.lowest_hz * self.ratio.powi(class as i32) } else { f32::INFINITY }
-    }
-}
+const LEAST_DAMPING_RATIO: f32 = 1e-3;
 
 /// The responses of unit oscillators: frequency classes x lateral columns of the wind x samples of its period.
 #[derive(Clone, Debug)]
@@ -121,23 +38,23 @@ pub struct ResponseTable {
     /// The classes of natural frequency.
     pub classes: FrequencyClasses,
     /// Number of lateral columns of the wind.
-    pub columns: usize,
+    pub(crate) columns: usize,
     /// Number of samples in a period.
-    pub samples: usize,
+    pub(crate) samples: usize,
     /// Time between two samples, in seconds.
-    pub time_step_s: f32,
+    pub(crate) time_step_s: f32,
     /// Responses to the four basis signals, at index `(class * columns + column) * samples + time`.
-    pub values: Vec<Vec4>,
+    pub(crate) values: Vec<Vec4>,
     /// Velocities of the wind at the reference height, at index `column * samples + time`: m/s in wind coordinates, and
     /// their magnitude as w.
-    pub velocities: Vec<Vec4>,
+    pub(crate) velocities: Vec<Vec4>,
 }
 
 impl ResponseTable {
     /// The steady response to a periodic wind. `columns` are its velocities in m/s in wind coordinates, one series of a
     /// whole period, `time_step_s` apart, for each lateral place; all count as long as the shortest, and an empty wind is
     /// a calm. Velocities that are not finite count as calm. The damping ratio is that of all oscillators; it is
-    /// at least [`LEAST_DAMPING_RATIO`].
+    /// at least 0.001.
     pub fn new(
         columns: &[Vec<Vec3>],
         time_step_s: f32,
@@ -180,7 +97,7 @@ impl ResponseTable {
     }
 
     /// Index into [`values`](Self::values).
-    pub fn index(&self, class: usize, column: usize, time: usize) -> usize {
+    fn index(&self, class: usize, column: usize, time: usize) -> usize {
         (class * self.columns + column) * self.samples + time
     }
 
@@ -239,13 +156,7 @@ impl SplinePlace {
         let first = (within as usize).min(count - 1);
         let t = (within - first as f64) as f32;
         let after = |steps: usize| (first + steps) % count;
-        let weights = Vec4::new(
-            ((2.0 - t) * t - 1.0) * t,
-            (3.0 * t - 5.0) * t * t + 2.0,
-            ((4.0 - 3.0 * t) * t + 1.0) * t,
-            (t - 1.0) * t * t,
-        );
-        Self { samples: [after(count - 1), first, after(1), after(2)], weights: 0.5 * weights }
+        Self { samples: [after(count - 1), first, after(1), after(2)], weights: catmull_rom(t).into() }
     }
 
     fn of(&self, series: &[Vec4]) -> Vec4 {

@@ -1,13 +1,12 @@
 //! Draws fires: a mesh and a material for each, made once, and a light that flickers.
 
 use super::{
-    burn::{Burning, Fire, kindle_fires},
+    components::{Fire, Flames, generate_flames},
     material::{FireMaterial, ShelteredFireMaterial},
     mesh::{bounds, fire_mesh},
 };
 use crate::{
-    schedule::WindwoodSystems,
-    sway::{DrawPath, StandTables},
+    render::{RenderCapabilities, SwayBuffers},
     wind::WindClock,
 };
 use bevy::{
@@ -19,7 +18,7 @@ use bevy::{
     render::RenderApp,
 };
 
-/// Draws [`Fire`]s and spawns their lights. Needs [`SwayDrawPlugin`](crate::sway::SwayDrawPlugin), which has the wind
+/// Draws [`Fire`]s and spawns their lights. Needs [`TreeRenderPlugin`](crate::render::TreeRenderPlugin), which has the wind
 /// tables. Without a renderer it does nothing.
 pub struct FireDrawPlugin;
 
@@ -29,17 +28,13 @@ impl Plugin for FireDrawPlugin {
             return;
         }
         embedded_asset!(app, "shaders/fire.wesl");
-        let can_draw = resource_exists::<DrawPath>.and_then(resource_exists::<StandTables>);
+        let can_draw = resource_exists::<RenderCapabilities>.and_then(resource_exists::<SwayBuffers>);
         app.add_plugins((
             MaterialPlugin::<FireMaterial>::default(),
             MaterialPlugin::<ShelteredFireMaterial>::default(),
         ))
         .add_observer(clear_hearth)
-        .add_systems(Update, (show_fires, flicker_lights).chain().after(kindle_fires).run_if(can_draw))
-        .add_systems(
-            PostUpdate,
-            bind_anew.after(WindwoodSystems::Upload).run_if(resource_exists_and_changed::<StandTables>),
-        );
+        .add_systems(Update, (show_fires, flicker_lights).chain().after(generate_flames).run_if(can_draw));
     }
 }
 
@@ -55,47 +50,47 @@ const LEAST_ILLUMINANCE_LX: f32 = 0.1;
 
 fn show_fires(
     mut commands: Commands,
-    path: Res<DrawPath>,
-    tables: Res<StandTables>,
+    capabilities: Res<RenderCapabilities>,
+    buffers: Res<SwayBuffers>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut windy: ResMut<Assets<FireMaterial>>,
     mut sheltered: ResMut<Assets<ShelteredFireMaterial>>,
-    fires: Query<(Entity, &Burning, Option<&Children>), Changed<Burning>>,
+    fires: Query<(Entity, &Flames, Option<&Children>), Changed<Flames>>,
     lights: Query<Entity, With<FireLight>>,
 ) {
-    for (entity, burning, children) in &fires {
+    for (entity, flames, children) in &fires {
         for old in children.into_iter().flatten().filter(|child| lights.contains(**child)) {
             commands.entity(*old).despawn();
         }
         let mut fire = commands.entity(entity);
         fire.insert((
-            Mesh3d(meshes.add(fire_mesh(burning))),
-            bounds(burning),
+            Mesh3d(meshes.add(fire_mesh(flames))),
+            bounds(flames),
             NoAutoAabb,
             NotShadowCaster,
             NotShadowReceiver,
         ));
-        if path.sways {
-            fire.insert(MeshMaterial3d(windy.add(FireMaterial::new(burning, &tables))));
+        if capabilities.sways {
+            fire.insert(MeshMaterial3d(windy.add(FireMaterial::new(flames, &buffers))));
         } else {
-            fire.insert(MeshMaterial3d(sheltered.add(ShelteredFireMaterial::new(burning))));
+            fire.insert(MeshMaterial3d(sheltered.add(ShelteredFireMaterial::new(flames))));
         }
-        if burning.fire.look.light_lm > 0.0 {
-            let place = Transform::from_xyz(0.0, LIGHT_HEIGHT * burning.height_m, 0.0);
-            fire.with_child((FireLight, point_light(burning), place));
+        if flames.fire.look.light_lm > 0.0 {
+            let place = Transform::from_xyz(0.0, LIGHT_HEIGHT * flames.height_m, 0.0);
+            fire.with_child((FireLight, point_light(flames), place));
         }
     }
 }
 
-fn point_light(burning: &Burning) -> PointLight {
-    let look = &burning.fire.look;
+fn point_light(flames: &Flames) -> PointLight {
+    let look = &flames.fire.look;
     let [red, green, blue] = look.light_colour;
     PointLight {
         color: Color::linear_rgb(red, green, blue),
         intensity: look.light_lm,
         // A point light of I lm gives I / (4 pi r^2) lx.
         range: (look.light_lm / (4.0 * std::f32::consts::PI * LEAST_ILLUMINANCE_LX)).sqrt(),
-        radius: 0.25 * burning.fire.shape.size_m,
+        radius: 0.25 * flames.fire.shape.size_m,
         shadow_maps_enabled: look.casts_shadows,
         ..default()
     }
@@ -103,19 +98,13 @@ fn point_light(burning: &Burning) -> PointLight {
 
 fn flicker_lights(
     clock: Res<WindClock>,
-    fires: Query<&Burning>,
+    fires: Query<&Flames>,
     mut lights: Query<(&ChildOf, &mut PointLight), With<FireLight>>,
 ) {
     for (fire, mut light) in &mut lights {
-        let Ok(burning) = fires.get(fire.parent()) else { continue };
-        light.intensity = burning.fire.look.light_lm * burning.flicker.level(clock.time_s);
+        let Ok(flames) = fires.get(fire.parent()) else { continue };
+        light.intensity = flames.fire.look.light_lm * flames.flicker.level(clock.time_s);
     }
-}
-
-/// Binds materials to wind tables that were replaced.
-fn bind_anew(mut materials: ResMut<Assets<FireMaterial>>) {
-    // Iterating mutably marks every material as changed.
-    materials.iter_mut().for_each(drop);
 }
 
 fn clear_hearth(

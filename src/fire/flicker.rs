@@ -1,7 +1,7 @@
-//! The rhythm of a fire: how bright it is at any moment. `shaders/fire.wesl` has the twin.
+//! The flicker of a fire: its brightness at any moment. `shaders/fire.wesl` has the same formula.
 //!
 //! A sum of three sines whose frequencies have no simple ratio, so that it does not look periodic; whole cycles in the
-//! period [`FLUTTER_PERIOD_S`] of all our rhythms, so that it never jumps:
+//! period [`FLUTTER_PERIOD_S`] of all periodic motion here, so that it never jumps:
 //!
 //! ```text
 //! level = 1 + depth sum_j w_j sin 2 pi (m_j t / period + phase_j),   sum_j w_j = 1
@@ -11,12 +11,12 @@ use crate::sway::FLUTTER_PERIOD_S;
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::f64::consts::TAU;
 
-/// Frequencies of the sines, relative to the fire's: the breathing of the whole, its puffs, the shimmer of tongues.
-pub const RATIOS: [f32; 3] = [0.382, 1.0, 4.236];
+/// Frequencies of the sines, relative to the fire's: slow changes of the whole, its puffs, single tongues.
+const RATIOS: [f32; 3] = [0.382, 1.0, 4.236];
 /// Their weights.
 pub const WEIGHTS: [f32; 3] = [0.3, 0.45, 0.25];
 
-/// A fire's own rhythm.
+/// The flicker of one fire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flicker {
     /// Whole cycles of each sine in the period.
@@ -28,8 +28,8 @@ pub struct Flicker {
 }
 
 impl Flicker {
-    /// The rhythm of a fire that flickers with `rate_hz`.
-    pub fn new(rate_hz: f32, depth: f32, seed: u64) -> Self {
+    /// The flicker of a fire, with a mean frequency of `rate_hz`.
+    pub(super) fn new(rate_hz: f32, depth: f32, seed: u64) -> Self {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
         Self {
             cycles: RATIOS.map(|ratio| (ratio * rate_hz * FLUTTER_PERIOD_S as f32).round()),
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn the_level_keeps_to_its_depth_and_has_the_mean_1() {
+    fn level_stays_within_its_depth_and_has_the_mean_1() {
         for seed in 0..5 {
             let levels = levels(&Flicker::new(1.7, 0.3, seed));
             assert!(levels.iter().all(|level| (0.7..=1.3).contains(level)));
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_a_function_of_time_and_seed_that_does_not_jump() {
+    fn level_is_a_continuous_function_of_time_and_seed() {
         let flicker = Flicker::new(1.7, 0.3, 1);
         assert_eq!(flicker, Flicker::new(1.7, 0.3, 1));
         assert_ne!(flicker.level(3.0), Flicker::new(1.7, 0.3, 2).level(3.0));

@@ -1,10 +1,13 @@
 //! The materials of a fire: emissive, additive, without light from elsewhere.
 
 use super::{
-    burn::Burning,
+    components::Flames,
     mesh::{ATTRIBUTE_FLAME, ATTRIBUTE_FLAME_OWN},
 };
-use crate::sway::{FLUTTER_PERIOD_S, StandTables};
+use crate::{
+    render::{SwayBuffers, pipeline::specialize},
+    sway::FLUTTER_PERIOD_S,
+};
 use bevy::{
     mesh::MeshVertexBufferLayoutRef,
     pbr::{Material, MaterialPipeline, MaterialPipelineKey},
@@ -54,37 +57,37 @@ pub(super) struct FireUniform {
     padding: Vec2,
 }
 
-impl From<&Burning> for FireUniform {
-    fn from(burning: &Burning) -> Self {
-        let look = &burning.fire.look;
+impl From<&Flames> for FireUniform {
+    fn from(flames: &Flames) -> Self {
+        let look = &flames.fire.look;
         let opaque = |colour: [f32; 3]| Vec3::from_array(colour).extend(1.0);
-        let flicker = &burning.flicker;
+        let flicker = &flames.flicker;
         Self {
             inner_colour: opaque(look.inner_colour),
             outer_colour: opaque(look.outer_colour),
             cycles_and_depth: Vec3::from_array(flicker.cycles).extend(flicker.depth),
             phases_and_period: Vec3::from_array(flicker.phases).extend(FLUTTER_PERIOD_S as f32),
             luminance_cd_m2: look.luminance_cd_m2,
-            height_m: burning.height_m,
+            height_m: flames.height_m,
             exposure: look.exposure,
             glow: look.glow,
             rise_cycles: (look.flicker_hz * FLUTTER_PERIOD_S as f32).round(),
-            size_m: burning.fire.shape.size_m,
+            size_m: flames.fire.shape.size_m,
             padding: Vec2::ZERO,
         }
     }
 }
 
 impl FireMaterial {
-    pub fn new(burning: &Burning, tables: &StandTables) -> Self {
-        let [wind_a, wind_b] = tables.winds.clone();
-        Self { fire: FireUniform::from(burning), frame: tables.frame.clone(), wind_a, wind_b }
+    pub fn new(flames: &Flames, buffers: &SwayBuffers) -> Self {
+        let [wind_a, wind_b] = buffers.winds.clone();
+        Self { fire: FireUniform::from(flames), frame: buffers.frame.clone(), wind_a, wind_b }
     }
 }
 
 impl ShelteredFireMaterial {
-    pub fn new(burning: &Burning) -> Self {
-        Self { fire: FireUniform::from(burning) }
+    pub fn new(flames: &Flames) -> Self {
+        Self { fire: FireUniform::from(flames) }
     }
 }
 
@@ -93,26 +96,20 @@ const FIRE_SHADER: &str = "embedded://bevy_windwood/fire/shaders/fire.wesl";
 fn specialize_fire(
     descriptor: &mut RenderPipelineDescriptor,
     layout: &MeshVertexBufferLayoutRef,
-    shader_defs: &[&'static str],
+    flags: &[&'static str],
 ) -> Result<(), SpecializedMeshPipelineError> {
-    descriptor.vertex.buffers = vec![layout.0.get_layout(&[
+    descriptor.primitive.cull_mode = None;
+    let attributes = [
         Mesh::ATTRIBUTE_POSITION.at_shader_location(0),
         Mesh::ATTRIBUTE_UV_0.at_shader_location(2),
         ATTRIBUTE_FLAME.at_shader_location(8),
         ATTRIBUTE_FLAME_OWN.at_shader_location(9),
-    ])?];
-    descriptor.primitive.cull_mode = None;
-    for shader_def in shader_defs {
-        descriptor.vertex.shader_defs.push((*shader_def).into());
-        if let Some(fragment) = &mut descriptor.fragment {
-            fragment.shader_defs.push((*shader_def).into());
-        }
-    }
-    Ok(())
+    ];
+    specialize(descriptor, layout, &attributes, flags)
 }
 
 macro_rules! fire_material {
-    ($material:ty, $shader_defs:expr) => {
+    ($material:ty, $flags:expr) => {
         impl Material for $material {
             fn vertex_shader() -> ShaderRef {
                 FIRE_SHADER.into()
@@ -140,7 +137,7 @@ macro_rules! fire_material {
                 layout: &MeshVertexBufferLayoutRef,
                 _: MaterialPipelineKey<Self>,
             ) -> Result<(), SpecializedMeshPipelineError> {
-                specialize_fire(descriptor, layout, &$shader_defs)
+                specialize_fire(descriptor, layout, &$flags)
             }
         }
     };

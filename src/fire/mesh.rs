@@ -1,10 +1,10 @@
-//! The mesh of a fire: a strip for each tongue, the bed of embers, sparks, and the glow around all.
+//! The mesh of a fire: strips for the tongues, the bed of embers, the sparks, and the glow around all.
 //!
-//! Tongues turn their breadth to the eye in the vertex shader: a rhomb seen from its edge would not be there. The bases of
-//! copies, which hang in the air and are seen from their edge, are left out.
+//! The vertex shader turns tongues to face the camera: a rhomb seen from its edge would be invisible. The bases of copies,
+//! which float in the air and are seen from their edge, are left out.
 
 use super::{
-    burn::Burning,
+    components::Flames,
     rhombs::{Rhomb, RhombKind},
 };
 use bevy::{
@@ -22,7 +22,7 @@ pub(super) const ATTRIBUTE_FLAME: MeshVertexAttribute =
 pub(super) const ATTRIBUTE_FLAME_OWN: MeshVertexAttribute =
     MeshVertexAttribute::new("FlameOwn", 0x464c_4f57, VertexFormat::Float32x4);
 
-/// Kinds of strips, as the shader tells them apart.
+/// Kinds of strips, as the shader numbers them.
 const BED: f32 = 0.0;
 const TONGUE: f32 = 1.0;
 const SPARK: f32 = 2.0;
@@ -62,12 +62,12 @@ impl Strips {
     }
 }
 
-pub(super) fn fire_mesh(burning: &Burning) -> Mesh {
-    let shape = &burning.fire.shape;
+pub(super) fn fire_mesh(flames: &Flames) -> Mesh {
+    let shape = &flames.fire.shape;
     let mut random = Xoshiro256PlusPlus::seed_from_u64(!shape.seed);
     let mut strips = Strips::default();
     let half_width = |rhomb: &Rhomb| 0.5 * rhomb.across.length();
-    for rhomb in burning.rhombs.iter() {
+    for rhomb in flames.rhombs.iter() {
         let share = match rhomb.kind {
             RhombKind::Base => rhomb.along.length() / shape.size_m,
             RhombKind::Tongue => rhomb.along.length() / (shape.size_m * shape.tongue_length),
@@ -83,14 +83,14 @@ pub(super) fn fire_mesh(burning: &Burning) -> Mesh {
             }
         }
     }
-    for _ in 0..burning.fire.look.embers {
+    for _ in 0..flames.fire.look.embers {
         let place = Vec2::from_angle(random.random_range(0.0..std::f32::consts::TAU)) * random.random::<f32>();
         let start = Vec3::new(place.x, 0.0, place.y) * (0.3 * shape.size_m);
         strips.add(start, Vec3::Y * shape.size_m, SPARK_SHARE * shape.size_m, [SPARK, random.random(), 0.0, 0.0]);
     }
-    if burning.fire.look.glow > 0.0 {
-        let radius = GLOW_SHARE * burning.height_m;
-        strips.add(Vec3::Y * (0.4 * burning.height_m), Vec3::Y * radius, radius, [GLOW, 0.0, 1.0, 0.0]);
+    if flames.fire.look.glow > 0.0 {
+        let radius = GLOW_SHARE * flames.height_m;
+        strips.add(Vec3::Y * (0.4 * flames.height_m), Vec3::Y * radius, radius, [GLOW, 0.0, 1.0, 0.0]);
     }
     Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
         .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, strips.starts)
@@ -101,7 +101,7 @@ pub(super) fn fire_mesh(burning: &Burning) -> Mesh {
 }
 
 /// A box that holds the fire and its sparks in a storm.
-pub(super) fn bounds(burning: &Burning) -> Aabb {
-    let reach = REACH * burning.height_m.max(burning.fire.shape.size_m);
+pub(super) fn bounds(flames: &Flames) -> Aabb {
+    let reach = REACH * flames.height_m.max(flames.fire.shape.size_m);
     Aabb::from_min_max(Vec3::new(-reach, -0.5 * reach, -reach), Vec3::splat(reach))
 }

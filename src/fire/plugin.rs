@@ -1,7 +1,7 @@
 //! Registers fires, without their drawing.
 
-use super::burn::{Fire, kindle_fires, put_out_fire};
-use crate::schedule::WindwoodSystems;
+use super::components::{Fire, generate_flames, remove_flames};
+use crate::schedule::{WindwoodSystems, configure_sets};
 use bevy::prelude::*;
 
 /// Grows the flames of every [`Fire`].
@@ -9,8 +9,10 @@ pub struct FirePlugin;
 
 impl Plugin for FirePlugin {
     fn build(&self, app: &mut App) {
+        configure_sets(app);
+        configure_sets(app);
         app.register_type::<Fire>()
-            .add_observer(put_out_fire)
-            .add_systems(Update, kindle_fires.in_set(WindwoodSystems::Grow));
+            .add_observer(remove_flames)
+            .add_systems(Update, generate_flames.in_set(WindwoodSystems::Bake));
     }
 }

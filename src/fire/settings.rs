@@ -1,4 +1,4 @@
-//! What can be chosen about a fire, and the limits that keep every choice finite.
+//! The settings of a fire, and their limits.
 
 use crate::setting::{SettingError, require, require_colour};
 use bevy::reflect::Reflect;
@@ -32,7 +32,7 @@ impl Default for FireShape {
     }
 }
 
-/// How a fire looks and shines. Colours are linear red, green, blue, each 0 to 1.
+/// The colours, brightness and light of a fire. Colours are linear red, green, blue, each 0 to 1.
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FireLook {
@@ -120,19 +120,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_defaults_are_valid() {
+    fn defaults_are_valid() {
         FireShape::default().validate().unwrap();
         FireLook::default().validate().unwrap();
     }
 
     #[test]
-    fn a_threshold_that_would_never_end_is_refused() {
+    fn a_threshold_below_its_range_is_refused() {
         let error = FireShape { size_m: 1.0, threshold_m: 0.0, ..FireShape::default() }.validate().unwrap_err();
         assert_eq!(error.to_string(), "`threshold_m` is 0, but must be 0.1 to 1");
     }
 
     #[test]
-    fn what_is_not_a_number_is_refused() {
+    fn nan_and_infinity_are_refused() {
         assert!(FireShape { size_m: f32::NAN, ..FireShape::default() }.validate().is_err());
         assert!(FireLook { glow: f32::INFINITY, ..FireLook::default() }.validate().is_err());
     }

@@ -1,15 +1,10 @@
 //! The cells of a forest: its voxel grid, planted about the viewers in the background.
 
-use super::{
-    components::{Forest, ForestGround, ForestSettings},
-    cover::StandingGround,
-    near::NearTrees,
-};
+use super::{components::ForestSettings, near::NearTrees, reach::reaching};
 use crate::{
-    cells::{Cell, CellStore, CellStream, Orders, StreamSettings, Viewpoint},
-    scatter::{ForestPlan, Ground, LevelGround, Planter},
+    cells::{Cell, CellStore, CellStream, Orders, StreamSettings, ViewerPose},
+    scatter::{Ground, Planter},
     setting::SettingError,
-    terrain::{Terrain, TerrainSettings},
     tree::Species,
     viewpoint::Viewpoints,
 };
@@ -19,13 +14,8 @@ use bevy::{
 };
 use std::sync::Arc;
 
-/// What comes stays until a viewer is farther than this from it, over the distance at which it comes: who walks to and fro
-/// at a border makes nobody plant and clear.
-pub(super) const HYSTERESIS: f32 = 1.15;
-/// Cells that a task plants one after another: one alone takes less than to send it away.
-const CELLS_OF_A_TASK: usize = 16;
-/// No more cells than this lie from a viewer to the border of what is kept: `CellStream` follows at most 512.
-const MOST_CELLS: f32 = 500.0;
+/// Cells that a task plants one after another: one alone takes less time than to start a task.
+const CELLS_PER_TASK: usize = 16;
 
 pub(super) type SharedGround = Arc<dyn Ground + Send + Sync>;
 
@@ -46,7 +36,7 @@ pub struct ForestCells {
 }
 
 impl ForestCells {
-    fn new(
+    pub(super) fn new(
         planter: Planter,
         ground: SharedGround,
         species: Vec<Handle<Species>>,
@@ -68,6 +58,16 @@ impl ForestCells {
             planting: Vec::new(),
             generation,
         })
+    }
+
+    /// Takes over the near trees of the plan before; what is of no use is returned. Where impostors have come or gone, trees have to be others.
+    pub(super) fn take_over(&mut self, before: &mut Self) -> Vec<Entity> {
+        let empty = NearTrees::new(&self.settings, self.planter.cell_m(), self.planter.cells());
+        let Ok(near) = empty.map(|empty| std::mem::replace(&mut before.near, empty)) else { return Vec::new() };
+        if (before.settings.far_to_m > 0.0) != (self.settings.far_to_m > 0.0) {
+            return near.entities().collect();
+        }
+        self.near.take_over(near)
     }
 
     /// Whether every tree that is wanted from where the viewers are stands as an entity.
@@ -118,13 +118,12 @@ impl ForestCells {
     }
 
     /// Grows whenever the forest begins anew.
-    #[cfg(feature = "render")]
     pub(super) fn generation(&self) -> u64 {
         self.generation
     }
 
     /// Takes over what was planted, drops what nobody is near to any more, and has what is missing planted.
-    fn step(&mut self, viewpoints: &[Viewpoint]) {
+    fn step(&mut self, viewpoints: &[ViewerPose]) {
         let Self { store, stream, planting, .. } = self;
         planting.retain_mut(|task| {
             let Some(planted) = block_on(poll_once(task)) else { return true };
@@ -137,7 +136,7 @@ impl ForestCells {
         for cell in &self.orders.drop {
             self.store.remove(*cell);
         }
-        for cells in self.orders.plant.chunks(CELLS_OF_A_TASK) {
+        for cells in self.orders.plant.chunks(CELLS_PER_TASK) {
             let (planter, ground, cells) = (self.planter.clone(), self.ground.clone(), cells.to_vec());
             self.planting.push(AsyncComputeTaskPool::get().spawn(async move {
                 let mut buffer = Vec::new();
@@ -147,75 +146,10 @@ impl ForestCells {
     }
 }
 
-/// Follows viewers over so many metres, with squares of that side.
-pub(super) fn reaching(load_m: f32, side_m: f32) -> StreamSettings {
-    let load_m = load_m.min(MOST_CELLS / HYSTERESIS * side_m);
-    StreamSettings { load_m, keep_m: (HYSTERESIS * load_m).max(load_m + side_m), ..StreamSettings::default() }
-}
-
-/// Begins anew with forests that are new, whose plan has been loaded or changed, or whose ground is another.
-pub(super) fn begin_forests(
-    mut commands: Commands,
-    plans: Res<Assets<ForestPlan>>,
-    assets: Res<AssetServer>,
-    mut events: MessageReader<AssetEvent<ForestPlan>>,
-    forests: Query<(Entity, Ref<Forest>, Ref<ForestSettings>, Option<Ref<ForestGround>>, Option<&ForestCells>)>,
-    terrains: Query<(Ref<Terrain>, &TerrainSettings)>,
-) {
-    let changed: Vec<AssetId<ForestPlan>> = events
-        .read()
-        .filter_map(|event| match event {
-            AssetEvent::Added { id } | AssetEvent::Modified { id } => Some(*id),
-            _ => None,
-        })
-        .collect();
-    let terrain = terrains.iter().next();
-    let other_terrain = terrain.as_ref().is_some_and(|(terrain, _)| terrain.is_changed());
-    for (entity, forest, wanted, own_ground, before) in &forests {
-        let other_ground = own_ground.as_ref().map_or(other_terrain, Ref::is_changed);
-        let due = forest.is_changed() || wanted.is_changed() || other_ground || changed.contains(&forest.plan.id());
-        let Some(plan) = plans.get(&forest.plan).filter(|_| due) else { continue };
-        let planter = match Planter::new(plan) {
-            Ok(planter) => planter,
-            Err(error) => {
-                warn!("forest: {error}; the last good one stays");
-                continue;
-            }
-        };
-        let settings = match wanted.validate() {
-            Ok(()) => ForestSettings::clone(&wanted),
-            Err(error) => {
-                let last = before.map_or_else(ForestSettings::default, |before| before.settings.clone());
-                warn!("forest settings: {error}; {last:?} are used");
-                last
-            }
-        };
-        let ground: SharedGround = match (own_ground, &terrain) {
-            (Some(own), _) => own.0.clone(),
-            (None, Some((terrain, settings))) => {
-                Arc::new(StandingGround::new(terrain.ground.clone(), settings.finest_cell_m))
-            }
-            (None, None) => Arc::new(LevelGround::default()),
-        };
-        let path = |name: &String| assets.load(format!("{}/{name}.species.ron", settings.species_folder));
-        let species = planter.species().iter().map(path).collect();
-        let generation = before.map_or(0, |before| before.generation + 1);
-        match ForestCells::new(planter, ground, species, settings, generation) {
-            Ok(cells) => {
-                before.into_iter().flat_map(|before| before.near.entities()).for_each(|cell| {
-                    commands.entity(cell).despawn();
-                });
-                commands.entity(entity).insert(cells);
-            }
-            Err(error) => warn!("forest: {error}; the last good one stays"),
-        }
-    }
-}
-
 /// Keeps the cells about the viewers planted.
 pub(super) fn plant_cells(
     viewpoints: Viewpoints,
-    mut places: Local<Vec<Viewpoint>>,
+    mut places: Local<Vec<ViewerPose>>,
     mut forests: Query<&mut ForestCells>,
 ) {
     viewpoints.fill(&mut places);

@@ -33,7 +33,7 @@ pub struct ForestSettings {
     pub species_folder: String,
     /// Trees stand as far as this from a viewpoint. units: m, domain: \[0, 20000\].
     pub trees_to_m: f32,
-    /// Beyond, trees are drawn as cards as far as this; 0 for none. units: m, domain: \[0, 50000\].
+    /// Beyond, trees are drawn as impostors as far as this; 0 for none. units: m, domain: \[0, 50000\].
     pub far_to_m: f32,
     /// Cells that are planted at once in the background. domain: \[1, 64\].
     pub cells_at_once: u32,

@@ -5,9 +5,9 @@
 
 use super::{cells::ForestCells, components::ForestCell, extent::Reach};
 use crate::{
-    cells::{Sun, View, Watch},
-    sway::Exposure,
-    tree::{Grove, TreeModel},
+    cells::{Culler, CullingView, SunShadows},
+    render::wind_exposure::WindExposure,
+    tree::{SpeciesModels, TreeModel},
 };
 use bevy::{
     camera::primitives::Frustum,
@@ -37,50 +37,49 @@ impl Default for ForestCulling {
 /// The shadows of a camera end at a depth, which in the corners of a wide picture lies farther away by up to this factor.
 const CORNERS: f32 = 1.6;
 
-/// The near cells of a forest as they are looked at.
+/// The near cells of a forest, as they are culled.
 #[derive(Component, Default)]
-pub(super) struct Sights {
+pub(super) struct CulledCells {
     /// By the number of the species.
     reaches: Vec<Reach>,
-    /// Side by side, for all of them are looked at in every frame.
-    sights: Vec<Sight>,
-    /// The forest's generation and changes that `sights` was made for.
+    /// Side by side in memory, since all are tested in every frame.
+    cells: Vec<CulledCell>,
+    /// The forest's generation and changes that `cells` was made for.
     made_for: Option<(u64, u64)>,
 }
 
 /// A near cell with trees.
-struct Sight {
+struct CulledCell {
     /// Of the box around its trees, m.
     corners: [Vec3; 2],
     entity: Entity,
-    /// For so many frames nobody has seen it.
+    /// Frames since it was last seen.
     unseen_frames: u8,
-    /// What was last told of it.
+    /// Whether it was last shown.
     shown: Option<bool>,
 }
 
-impl Sights {
+impl CulledCells {
     /// Cells with trees that were seen in the last frame.
     pub fn seen(&self) -> usize {
-        self.sights.iter().filter(|sight| sight.unseen_frames == 0).count()
+        self.cells.iter().filter(|cell| cell.unseen_frames == 0).count()
     }
 
     /// The box around the trees of each cell, and whether it was seen in the last frame.
     pub fn boxes(&self) -> impl Iterator<Item = ([Vec3; 2], bool)> {
-        self.sights.iter().map(|sight| (sight.corners, sight.unseen_frames == 0))
+        self.cells.iter().map(|cell| (cell.corners, cell.unseen_frames == 0))
     }
 
-    /// Puts the cells in order again when one has come or gone.
-    fn renew(&mut self, forest: &ForestCells) {
+    /// Updates the list of cells when one has come or gone.
+    fn update_cells(&mut self, forest: &ForestCells) {
         let wanted = Some((forest.generation(), forest.near.changes()));
         if self.made_for == wanted {
             return;
         }
         self.made_for = wanted;
-        let before: HashMap<Entity, u8> =
-            self.sights.drain(..).map(|sight| (sight.entity, sight.unseen_frames)).collect();
+        let before: HashMap<Entity, u8> = self.cells.drain(..).map(|cell| (cell.entity, cell.unseen_frames)).collect();
         let cell_m = forest.planter().cell_m();
-        self.sights.extend(forest.near.planted().map(|(cell, entity, extent)| Sight {
+        self.cells.extend(forest.near.planted().map(|(cell, entity, extent)| CulledCell {
             corners: extent.corners(cell.as_vec2() * cell_m, cell_m, &self.reaches),
             entity,
             unseen_frames: before.get(&entity).copied().unwrap_or(0),
@@ -88,19 +87,20 @@ impl Sights {
         }));
     }
 
-    /// Looks at every cell, and shows by its entity those that are seen; those that have not been for a while are hidden.
-    fn look(&mut self, settings: ForestCulling, views: &[Watch], mut show: impl FnMut(Entity, bool)) {
-        for sight in &mut self.sights {
-            let [min, max] = sight.corners;
-            let is_near = |view: &Watch| view.eye_m().distance(view.eye_m().clamp(min, max)) <= settings.around_m;
-            let is_seen = |view: &Watch| is_near(view) || view.sees(min, max).is_some();
+    /// Tests every cell. `show` is called with the entity of each cell that is to be shown from now on, or to be hidden since it has not been
+    /// seen for a while.
+    fn cull(&mut self, settings: ForestCulling, views: &[Culler], mut show: impl FnMut(Entity, bool)) {
+        for cell in &mut self.cells {
+            let [min, max] = cell.corners;
+            let is_near = |view: &Culler| view.eye_m().distance(view.eye_m().clamp(min, max)) <= settings.around_m;
+            let is_seen = |view: &Culler| is_near(view) || view.sees(min, max);
             // Where nobody looks, what is there stays.
             let seen = !settings.enabled || views.is_empty() || views.iter().any(is_seen);
-            sight.unseen_frames = if seen { 0 } else { sight.unseen_frames.saturating_add(1) };
-            let shown = sight.unseen_frames <= settings.lingering_frames;
-            if sight.shown != Some(shown) {
-                sight.shown = Some(shown);
-                show(sight.entity, shown);
+            cell.unseen_frames = if seen { 0 } else { cell.unseen_frames.saturating_add(1) };
+            let shown = cell.unseen_frames <= settings.lingering_frames;
+            if cell.shown != Some(shown) {
+                cell.shown = Some(shown);
+                show(cell.entity, shown);
             }
         }
     }
@@ -109,26 +109,27 @@ impl Sights {
 /// Notes how far the trees of a species may reach, when more of them have been baked or another wind blows.
 pub(super) fn measure_species(
     mut commands: Commands,
-    grove: Res<Grove>,
+    species_models: Res<SpeciesModels>,
     models: Res<Assets<TreeModel>>,
-    exposure: Option<Res<Exposure>>,
-    mut forests: Query<(Entity, Ref<ForestCells>, Option<&mut Sights>)>,
+    exposure: Option<Res<WindExposure>>,
+    mut forests: Query<(Entity, Ref<ForestCells>, Option<&mut CulledCells>)>,
 ) {
-    let exposed_anew = exposure.as_ref().is_some_and(DetectChanges::is_changed);
-    for (entity, forest, sights) in &mut forests {
-        let Some(mut sights) = sights else {
-            commands.entity(entity).insert(Sights::default());
+    let has_other_exposure = exposure.as_ref().is_some_and(DetectChanges::is_changed);
+    for (entity, forest, cells) in &mut forests {
+        let Some(mut cells) = cells else {
+            commands.entity(entity).insert(CulledCells::default());
             continue;
         };
-        if !grove.is_changed() && !exposed_anew && !sights.is_added() && !forest.is_added() {
+        let is_other_plan = cells.made_for.is_none_or(|(generation, _)| generation != forest.generation());
+        if !species_models.is_changed() && !has_other_exposure && !is_other_plan {
             continue;
         }
         // Without a renderer trees have all the room that they may ever need.
         let exposure = exposure.as_deref().copied().unwrap_or_default();
-        sights.made_for = None;
-        sights.reaches.clear();
-        sights.reaches.extend(forest.species().iter().map(|species| {
-            let Some(entry) = grove.get(species.id()) else { return Reach::default() };
+        cells.made_for = None;
+        cells.reaches.clear();
+        cells.reaches.extend(forest.species().iter().map(|species| {
+            let Some(entry) = species_models.get(species.id()) else { return Reach::default() };
             let grown = entry.stages.values().flat_map(|stage| &stage.models);
             let bounds = |model| exposure.bounds(model, &entry.species.phenology);
             grown
@@ -144,27 +145,29 @@ pub(super) fn cull_cells(
     settings: Res<ForestCulling>,
     cameras: Query<(&Camera, &Frustum, &GlobalTransform), With<Camera3d>>,
     suns: Query<(&DirectionalLight, &GlobalTransform, &CascadeShadowConfig)>,
-    mut views: Local<Vec<Watch>>,
-    mut forests: Query<(&ForestCells, &mut Sights)>,
+    mut views: Local<Vec<Culler>>,
+    mut forests: Query<(&ForestCells, &mut CulledCells)>,
     mut cells: Query<&mut Visibility, With<ForestCell>>,
 ) {
     // One for each camera, and one more for each of its suns.
     views.clear();
     for (_, frustum, at) in cameras.iter().filter(|(camera, ..)| camera.is_active) {
-        let view = View {
+        let view = CullingView {
             planes: frustum.half_spaces.map(|plane| plane.normal_d()),
             eye_m: at.translation(),
             distance_m: f32::MAX,
             sun: None,
         };
-        views.push(Watch::new(&view));
+        views.push(Culler::new(&view));
         let shadows = suns.iter().filter(|(light, ..)| light.shadow_maps_enabled);
-        views.extend(shadows.map(|(_, at, cascades)| Watch::new(&View { sun: Some(sun(at, cascades)), ..view })));
+        views.extend(
+            shadows.map(|(_, at, cascades)| Culler::new(&CullingView { sun: Some(sun(at, cascades)), ..view })),
+        );
     }
-    for (forest, mut sights) in &mut forests {
-        let sights = sights.bypass_change_detection();
-        sights.renew(forest);
-        sights.look(*settings, &views, |cell, shown| {
+    for (forest, mut culled) in &mut forests {
+        let culled = culled.bypass_change_detection();
+        culled.update_cells(forest);
+        culled.cull(*settings, &views, |cell, shown| {
             if let Ok(mut visibility) = cells.get_mut(cell) {
                 *visibility = if shown { Visibility::Inherited } else { Visibility::Hidden };
             }
@@ -172,9 +175,9 @@ pub(super) fn cull_cells(
     }
 }
 
-fn sun(at: &GlobalTransform, cascades: &CascadeShadowConfig) -> Sun {
+fn sun(at: &GlobalTransform, cascades: &CascadeShadowConfig) -> SunShadows {
     let shadow_distance_m = CORNERS * cascades.bounds.last().copied().unwrap_or(0.0);
-    Sun {
+    SunShadows {
         direction: at.forward().as_vec3(),
         shadow_distance_m,
         // Ground may lie anywhere below.

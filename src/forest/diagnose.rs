@@ -1,7 +1,7 @@
 //! How the forest does: counts and times among Bevy's diagnostics, and its cells as boxes.
 
-use super::{cells::ForestCells, cull::Sights, far::FarBlocks};
-use crate::{sway::TreesByLevel, timing::SystemTimes};
+use super::{cells::ForestCells, cull::CulledCells, impostors::ForestImpostors};
+use crate::{render::draw::counts::TreesByLod, timing::SystemTimes};
 use bevy::{
     diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic},
     gizmos::GizmoPlugin,
@@ -21,25 +21,25 @@ impl ForestDiagnosticsPlugin {
     /// Near cells: their trees are entities.
     pub const CELLS_NEAR: DiagnosticPath = DiagnosticPath::const_new("windwood/cells_near");
     /// Near cells that are seen, or whose shadows may be.
-    pub const CELLS_SEEN: DiagnosticPath = DiagnosticPath::const_new("windwood/cells_seen");
+    pub const CELLS_SEEN: DiagnosticPath = DiagnosticPath::const_new("windwood/cells");
     /// Trees that are drawn in full, at the first lower level, and at the second.
     pub const TREES: [DiagnosticPath; 3] = [
         DiagnosticPath::const_new("windwood/trees_full"),
         DiagnosticPath::const_new("windwood/trees_lower"),
         DiagnosticPath::const_new("windwood/trees_lowest"),
     ];
-    /// Trees that wear two levels, one of which fades into the other.
+    /// Trees of which two levels are drawn, one of which fades into the other.
     pub const TREES_FADING: DiagnosticPath = DiagnosticPath::const_new("windwood/trees_fading");
-    /// Trees that have cards.
-    pub const CARDS: DiagnosticPath = DiagnosticPath::const_new("windwood/cards");
-    /// What the tables of trees, beams and poses, and the meshes of cards have on the graphics processor, bytes.
+    /// Trees that have impostors.
+    pub const IMPOSTORS: DiagnosticPath = DiagnosticPath::const_new("windwood/impostors");
+    /// What the tables of trees, beams and poses, and the meshes of impostors have on the GPU, bytes.
     pub const GPU_BYTES: DiagnosticPath = DiagnosticPath::const_new("windwood/gpu_bytes");
 }
 
 impl Plugin for ForestDiagnosticsPlugin {
     fn build(&self, app: &mut App) {
         let counts =
-            [Self::CELLS_PLANTED, Self::STEMS, Self::CELLS_NEAR, Self::CELLS_SEEN, Self::TREES_FADING, Self::CARDS]
+            [Self::CELLS_PLANTED, Self::STEMS, Self::CELLS_NEAR, Self::CELLS_SEEN, Self::TREES_FADING, Self::IMPOSTORS]
                 .into_iter()
                 .chain(Self::TREES);
         for path in counts {
@@ -51,8 +51,8 @@ impl Plugin for ForestDiagnosticsPlugin {
 }
 
 fn count_forest(
-    forests: Query<(&ForestCells, Option<&FarBlocks>, Option<&Sights>)>,
-    trees: TreesByLevel,
+    forests: Query<(&ForestCells, Option<&ForestImpostors>, Option<&CulledCells>)>,
+    trees: TreesByLod,
     mut diagnostics: Diagnostics,
 ) {
     use ForestDiagnosticsPlugin as Is;
@@ -61,13 +61,13 @@ fn count_forest(
     add(&Is::CELLS_PLANTED, sum(|forest| forest.store().len()));
     add(&Is::STEMS, sum(|forest| forest.store().plants()));
     add(&Is::CELLS_NEAR, sum(|forest| forest.near.entities().count()));
-    add(&Is::CELLS_SEEN, forests.iter().filter_map(|(.., sights)| sights).map(Sights::seen).sum());
+    add(&Is::CELLS_SEEN, forests.iter().filter_map(|(.., cells)| cells).map(CulledCells::seen).sum());
     let (levels, fading) = trees.count();
     Is::TREES.iter().zip(levels).for_each(|(path, count)| add(path, count));
     add(&Is::TREES_FADING, fading);
-    let blocks = || forests.iter().filter_map(|(_, blocks, _)| blocks);
-    add(&Is::CARDS, blocks().map(FarBlocks::trees).sum());
-    add(&Is::GPU_BYTES, trees.table_bytes() + blocks().map(FarBlocks::bytes).sum::<usize>());
+    let tiles = || forests.iter().filter_map(|(_, tiles, _)| tiles);
+    add(&Is::IMPOSTORS, tiles().map(ForestImpostors::trees).sum());
+    add(&Is::GPU_BYTES, trees.table_bytes() + tiles().map(ForestImpostors::bytes).sum::<usize>());
 }
 
 /// One diagnostic a system, in microseconds.
@@ -134,8 +134,8 @@ impl Plugin for ForestGizmoPlugin {
     }
 }
 
-fn draw_cells(settings: Res<ForestGizmos>, forests: Query<&Sights>, trees: TreesByLevel, mut gizmos: Gizmos) {
-    for ([min, max], seen) in forests.iter().flat_map(Sights::boxes) {
+fn draw_cells(settings: Res<ForestGizmos>, forests: Query<&CulledCells>, trees: TreesByLod, mut gizmos: Gizmos) {
+    for ([min, max], seen) in forests.iter().flat_map(CulledCells::boxes) {
         let colour = if seen { settings.seen } else { settings.unseen };
         gizmos.cube(Transform::from_translation(0.5 * (min + max)).with_scale(max - min), colour);
     }

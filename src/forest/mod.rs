@@ -1,15 +1,17 @@
 //! Forests as entities: a plan becomes trees about every [`Viewpoint`](crate::Viewpoint), cell by cell.
 //!
 //! - [`Forest`] stands on a [`Terrain`](crate::terrain::Terrain), on ground of your own ([`ForestGround`]), or on the level.
+//! - `begin` makes a forest's plan ready, when it is new or has changed.
 //! - `cells` plants the forest's voxel grid ([`CellStore`](crate::cells::CellStore)) in the background, as far as trees are
 //!   drawn at all; what nobody is near to goes again. Ask [`ForestCells::store`] who stands where.
-//! - `near` turns the plants of near cells into [`Tree`](crate::tree::Tree)s, a few a frame. What stands where follows from
-//!   the plan alone, in whatever order cells come.
-//! - `serve` gives cells a wind of their own and the nearest trees beams and leaves as entities, where that is asked for.
-//! - With the feature `render`, `far` draws the trees beyond as cards, a block of cells at a time.
+//! - `near` and `stream_trees` spawn the plants of near cells as [`Tree`](crate::tree::Tree)s, a few a frame. What stands where follows from
+//!   the plan alone, in whatever order cells come. When the plan changes, trees that both plans have stay.
+//! - `near_services` gives cells a wind of their own and the nearest trees beams and leaves as entities, where that is asked for.
+//! - With the feature `render`, `impostors` draws the trees beyond, a tile of cells at a time.
 //! - With it, too, `cull` hides near cells out of view, and `diagnose` tells how the forest does.
 //! - [`PlanCover`] tells the ground where the woods are, so that they are seen beyond the last tree.
 
+mod begin;
 mod cells;
 mod components;
 mod cover;
@@ -19,11 +21,13 @@ mod cull;
 mod diagnose;
 mod extent;
 #[cfg(feature = "render")]
-mod far;
+mod impostors;
 mod loader;
 mod near;
+mod near_services;
 mod plugin;
-mod serve;
+mod reach;
+mod stream_trees;
 
 pub use cells::ForestCells;
 pub use components::{Forest, ForestCell, ForestGround, ForestSettings};
@@ -34,5 +38,5 @@ pub use plugin::ForestPlugin;
 pub use {
     cull::ForestCulling,
     diagnose::{ForestDiagnosticsPlugin, ForestGizmos},
-    far::{FarBlocks, ForestDrawPlugin},
+    impostors::{ForestImpostors, ForestRenderPlugin},
 };

@@ -1,14 +1,20 @@
 //! Registers forests.
 
 use super::{
-    cells::{begin_forests, plant_cells},
+    begin::{begin_forests, remove_forest},
+    cells::plant_cells,
     components::{Forest, ForestSettings},
     loader::ForestLoader,
-    near::raise_trees,
-    serve::{articulate_near, give_winds},
+    near_services::{articulate_near_trees, spawn_wind_cells},
+    stream_trees::stream_trees,
 };
 use crate::{
-    scatter::ForestPlan, schedule::WindwoodSystems, timing::timed, tree::TreePlugin, viewpoint::give_cameras_viewpoints,
+    plugin_checks::{require_assets, require_plugin},
+    scatter::ForestPlan,
+    schedule::{WindwoodSystems, configure_sets},
+    timing::timed,
+    tree::TreePlugin,
+    viewpoint::give_cameras_viewpoints,
 };
 use bevy::prelude::*;
 
@@ -17,14 +23,17 @@ pub struct ForestPlugin;
 
 impl Plugin for ForestPlugin {
     fn build(&self, app: &mut App) {
-        debug_assert!(app.is_plugin_added::<TreePlugin>(), "forests are made of trees");
+        require_assets::<Self>(app);
+        require_plugin::<Self, TreePlugin>(app);
+        configure_sets(app);
         give_cameras_viewpoints(app);
         app.init_asset::<ForestPlan>()
             .init_asset_loader::<ForestLoader>()
             .register_asset_reflect::<ForestPlan>()
             .register_type::<Forest>()
-            .register_type::<ForestSettings>();
-        let stream = timed!(app, begin_forests, plant_cells, raise_trees, give_winds, articulate_near);
-        app.add_systems(Update, stream.chain().before(WindwoodSystems::Grow));
+            .register_type::<ForestSettings>()
+            .add_observer(remove_forest);
+        let stream = timed!(app, begin_forests, plant_cells, stream_trees, spawn_wind_cells, articulate_near_trees);
+        app.add_systems(Update, stream.chain().in_set(WindwoodSystems::Stream));
     }
 }

@@ -1,6 +1,6 @@
-//! Lays out the blades of a meadow: tufts over the ground, blades in each tuft.
+//! The layout of a meadow: tufts over the ground, blades in each tuft.
 //!
-//! Zaharia (section 2.2) makes a tuft of blades that grow from closely positioned points, each with
+//! A tuft, after Zaharia (section 2.2), has blades that grow from closely positioned points, each with
 //!
 //! ```text
 //! l   = l_min + (l_max - l_min) random()        length
@@ -11,18 +11,17 @@
 //!
 //! Tufts stand at the points of a low-discrepancy sequence (Roberts' R2, 2018: multiples of the inverse plastic number,
 //! modulo 1), each moved a little. Blades are ordered so that **every prefix is a thinner meadow**: first one blade of each
-//! tuft, then a second, and so on. A blade's `rank` is its place in that order, from 0 to 1.
+//! tuft, then a second of each, and so on. A blade's `rank` is its place in that order, from 0 to 1.
 
 use super::settings::Sward;
+use crate::sequence::r2;
 use bevy::math::{Vec2, Vec3};
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::f32::consts::{FRAC_PI_2, TAU};
 
-/// Inverse of the plastic number, the root of x^3 = x + 1, and its square: the steps of the R2 sequence.
-const R2_STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_3];
 /// How far a tuft is moved off its point, as a share of the mean distance between tufts: enough to hide the lattice.
 const TUFT_JITTER: f32 = 0.45;
-/// Dryness of blades that are not dry: a touch of yellow that differs from blade to blade.
+/// Greatest dryness of blades that are not dry: a little yellow that differs from blade to blade.
 const GREENEST: f32 = 0.25;
 
 /// One blade at rest, in the patch's coordinates: y up, metres.
@@ -50,8 +49,8 @@ pub struct Blade {
 /// height is not a number, nothing grows.
 ///
 /// `sward` must be valid. The same sward over the same ground gives the same blades, bit by bit.
-pub fn lay_out(sward: &Sward, height_m: impl Fn(Vec2) -> f32) -> Vec<Blade> {
-    let tufts: Vec<Vec<Blade>> = (0..sward.tufts()).map(|tuft| grow_tuft(sward, tuft, &height_m)).collect();
+pub fn layout_blades(sward: &Sward, height_m: impl Fn(Vec2) -> f32) -> Vec<Blade> {
+    let tufts: Vec<Vec<Blade>> = (0..sward.tufts()).map(|tuft| layout_tuft(sward, tuft, &height_m)).collect();
     let mut blades: Vec<Blade> = (0..sward.tuft.blades as usize)
         .flat_map(|round| tufts.iter().filter_map(move |tuft| tuft.get(round)))
         .copied()
@@ -64,12 +63,12 @@ pub fn lay_out(sward: &Sward, height_m: impl Fn(Vec2) -> f32) -> Vec<Blade> {
 }
 
 /// All blades of one tuft. Each tuft has random numbers of its own, so that none depends on how many there are before it.
-fn grow_tuft(sward: &Sward, number: u32, height_m: &impl Fn(Vec2) -> f32) -> Vec<Blade> {
+fn layout_tuft(sward: &Sward, number: u32, height_m: &impl Fn(Vec2) -> f32) -> Vec<Blade> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(sward.seed ^ (u64::from(number) << 32));
     let tuft = &sward.tuft;
     let centre = tuft_centre(sward, number, &mut random);
     // An exponent above 1 makes short blades likelier, one below 1 long ones.
-    let poverty = (4.0 * tuft.clumping * (random.random::<f32>() - 0.5)).exp2();
+    let exponent = (4.0 * tuft.clumping * (random.random::<f32>() - 0.5)).exp2();
     let mut between = |low: f32, high: f32| low + (high - low) * random.random::<f32>();
     let blades = (0..tuft.blades).map(|_| {
         let azimuth_rad = between(0.0, TAU);
@@ -78,7 +77,7 @@ fn grow_tuft(sward: &Sward, number: u32, height_m: &impl Fn(Vec2) -> f32) -> Vec
         let is_dry = between(0.0, 1.0) < sward.dry_share;
         Blade {
             root: Vec3::new(at.x, height_m(at), at.y),
-            length_m: tuft.shortest_m + (tuft.longest_m - tuft.shortest_m) * between(0.0, 1.0).powf(poverty),
+            length_m: tuft.shortest_m + (tuft.longest_m - tuft.shortest_m) * between(0.0, 1.0).powf(exponent),
             width_m: between(tuft.narrowest_m, tuft.widest_m),
             azimuth_rad,
             lean_rad: tuft.spread * FRAC_PI_2 * between(0.0, 1.0),
@@ -91,7 +90,7 @@ fn grow_tuft(sward: &Sward, number: u32, height_m: &impl Fn(Vec2) -> f32) -> Vec
 }
 
 fn tuft_centre(sward: &Sward, number: u32, random: &mut Xoshiro256PlusPlus) -> Vec2 {
-    let share = R2_STEPS.map(|step| (0.5 + step * f64::from(number)).fract() as f32);
+    let share = r2([0.5; 2], number as usize);
     let size = Vec2::new(sward.width_m, sward.depth_m);
     let jitter = TUFT_JITTER / sward.tufts_per_m2.sqrt();
     let moved = Vec2::new(random.random_range(-1.0..1.0), random.random_range(-1.0..1.0)) * jitter;
@@ -113,18 +112,18 @@ mod tests {
     }
 
     fn level(sward: &Sward) -> Vec<Blade> {
-        lay_out(sward, |_| 0.0)
+        layout_blades(sward, |_| 0.0)
     }
 
     #[test]
-    fn there_are_as_many_blades_as_were_asked_for() {
+    fn layout_has_the_number_of_blades_of_the_sward() {
         let sward = sward();
         assert_eq!(level(&sward).len(), 6 * 3 * 20 * sward.tuft.blades as usize);
         assert_eq!(level(&sward).len() as u64, sward.blades());
     }
 
     #[test]
-    fn every_blade_is_within_the_limits_of_its_tuft_and_its_patch() {
+    fn blades_are_within_the_limits_of_tuft_and_patch() {
         let sward = sward();
         let tuft = &sward.tuft;
         for blade in level(&sward) {
@@ -137,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn without_clumping_lengths_and_angles_are_uniform_as_zaharia_has_them() {
+    fn lengths_and_angles_are_uniform_without_clumping() {
         let tuft = Tuft { blades: 50, clumping: 0.0, spread: 1.0, ..Tuft::default() };
         let blades = level(&Sward { tuft: tuft.clone(), ..sward() });
         let mean = |value: &dyn Fn(&Blade) -> f32| blades.iter().map(value).sum::<f32>() / blades.len() as f32;
@@ -154,13 +153,13 @@ mod tests {
     }
 
     #[test]
-    fn the_same_seed_gives_the_same_meadow_and_another_seed_another() {
+    fn layout_depends_on_the_seed() {
         assert_eq!(level(&sward()), level(&sward()));
         assert_ne!(level(&sward()), level(&Sward { seed: 5, ..sward() }));
     }
 
     #[test]
-    fn every_prefix_is_a_thinner_meadow() {
+    fn prefix_of_the_blades_is_evenly_spread() {
         let blades = level(&sward());
         // A tenth of the blades has about a tenth of them in each of 18 square metres: no bare and no dense spots.
         let tenth = &blades[..blades.len() / 10];
@@ -179,15 +178,15 @@ mod tests {
     #[test]
     fn blades_stand_on_the_ground() {
         let slope = |at: Vec2| 0.3 * at.x - 0.1 * at.y;
-        for blade in lay_out(&sward(), slope) {
+        for blade in layout_blades(&sward(), slope) {
             assert_eq!(blade.root.y, slope(Vec2::new(blade.root.x, blade.root.z)));
         }
     }
 
     #[test]
-    fn nothing_grows_where_the_ground_has_no_height() {
+    fn no_blade_stands_where_the_ground_has_no_height() {
         let pond = |at: Vec2| if at.length() < 1.0 { f32::NAN } else { 0.0 };
-        let blades = lay_out(&sward(), pond);
+        let blades = layout_blades(&sward(), pond);
         assert!(blades.iter().all(|blade| Vec2::new(blade.root.x, blade.root.z).length() >= 1.0));
         // The pond takes pi of 18 square metres.
         let share = blades.len() as f32 / level(&sward()).len() as f32;
@@ -195,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn clumping_makes_tufts_differ_more_than_chance_does() {
+    fn clumping_spreads_the_mean_lengths_of_tufts() {
         let mean_lengths = |clumping: f32| {
             let sward = Sward { tuft: Tuft { blades: 64, clumping, ..Tuft::default() }, ..sward() };
             let tufts = sward.tufts() as usize;

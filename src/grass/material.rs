@@ -1,13 +1,13 @@
 //! The material that bends blades in the vertex shader.
 
 use super::{
-    grow::GrassPatch,
+    components::GrassPatch,
     mesh::{ATTRIBUTE_BLADE, ATTRIBUTE_BLADE_TURN},
     settings::GrassLook,
 };
 use crate::{
-    shading::lay_out,
-    sway::{FLUTTER_PERIOD_S, StandTables},
+    render::{SwayBuffers, pipeline::specialize},
+    sway::FLUTTER_PERIOD_S,
 };
 use bevy::{
     mesh::MeshVertexBufferLayoutRef,
@@ -26,7 +26,7 @@ pub type GrassMaterial = ExtendedMaterial<StandardMaterial, GrassExtension>;
 /// The wind tables, which all materials share, and what is this meadow's own.
 #[derive(Asset, AsBindGroup, Reflect, Clone, Debug)]
 pub struct GrassExtension {
-    /// The clock of the frame.
+    /// The values of the frame.
     #[storage(103, read_only)]
     frame: Handle<ShaderBuffer>,
     /// Winds of slot A and B.
@@ -72,9 +72,9 @@ impl From<&GrassPatch> for GrassUniform {
 }
 
 /// The material of a patch.
-pub(super) fn grass_material(patch: &GrassPatch, tables: &StandTables) -> GrassMaterial {
-    let [wind_a, wind_b] = tables.winds.clone();
-    let extension = GrassExtension { frame: tables.frame.clone(), wind_a, wind_b, grass: GrassUniform::from(patch) };
+pub(super) fn grass_material(patch: &GrassPatch, buffers: &SwayBuffers) -> GrassMaterial {
+    let [wind_a, wind_b] = buffers.winds.clone();
+    let extension = GrassExtension { frame: buffers.frame.clone(), wind_a, wind_b, grass: GrassUniform::from(patch) };
     GrassMaterial { base: base_material(&patch.look), extension }
 }
 
@@ -120,6 +120,6 @@ impl MaterialExtension for GrassExtension {
             ATTRIBUTE_BLADE.at_shader_location(8),
             ATTRIBUTE_BLADE_TURN.at_shader_location(9),
         ];
-        lay_out(descriptor, layout, &attributes, &["WINDWOOD_GRASS", "VERTEX_COLORS"])
+        specialize(descriptor, layout, &attributes, &["WINDWOOD_GRASS", "VERTEX_COLORS"])
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     blades::Blade,
-    grow::Meadow,
+    components::Meadow,
     settings::GrassLook,
     spine::{LINKS, axis},
 };
@@ -23,7 +23,7 @@ pub(super) const ATTRIBUTE_BLADE_TURN: MeshVertexAttribute =
 /// Vertices of a blade: two at each joint, one at the tip.
 const VERTICES: u32 = 2 * LINKS as u32 + 1;
 
-/// Golden ratio, less 1: its multiples are spread evenly, so neighbours in rank tremble out of step.
+/// The golden ratio less 1. Its multiples modulo 1 are spread evenly, so neighbours in rank flutter out of phase.
 const GOLDEN: f32 = 0.618_034;
 
 /// Side and joint of each vertex of a blade: `uv` of the shader.
@@ -100,7 +100,7 @@ pub(super) fn bounds(meadow: &Meadow) -> Aabb {
 #[cfg(test)]
 mod tests {
     use super::{
-        super::{blades::lay_out, grow::GrassPatch, settings::Sward},
+        super::{blades::layout_blades, components::GrassPatch, settings::Sward},
         *,
     };
     use std::sync::Arc;
@@ -108,11 +108,11 @@ mod tests {
     fn meadow() -> Meadow {
         let sward = Sward { width_m: 2.0, depth_m: 2.0, ..Sward::default() };
         let patch = GrassPatch { sward, ..GrassPatch::default() };
-        Meadow { blades: Arc::new(lay_out(&patch.sward, |at| at.x)), patch }
+        Meadow { blades: Arc::new(layout_blades(&patch.sward, |at| at.x)), patch }
     }
 
     #[test]
-    fn both_meshes_have_the_vertices_and_triangles_of_every_blade() {
+    fn meshes_have_the_vertices_and_triangles_of_every_blade() {
         let meadow = meadow();
         let blades = meadow.blades.len();
         for mesh in [swaying_mesh(&meadow.blades), still_mesh(&meadow.blades, &meadow.patch.look)] {
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn the_box_holds_every_blade_in_every_wind() {
+    fn bounds_contain_every_blade_in_every_wind() {
         let meadow = meadow();
         let (least, greatest) = (Vec3::from(bounds(&meadow).min()), Vec3::from(bounds(&meadow).max()));
         for blade in meadow.blades.iter() {

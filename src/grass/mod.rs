@@ -1,15 +1,15 @@
 //! Meadows: tufts of grass blades after Zaharia, *Procedural Modeling of Natural Phenomena* (section 2.2), that bend in the
 //! wind field.
 //!
-//! A [`GrassPatch`] is one entity and one draw. Its blades are laid out once, off the frame ([`blades`]); after that the
-//! vertex shader bends each of them by the wind at its own place and time, so that gusts run over the meadow as waves.
+//! A [`GrassPatch`] is one entity and one draw. Its blades are laid out once, in the background ([`blades`]). After that the
+//! vertex shader bends each of them by the wind at its own place and time, so gusts run over the meadow as waves.
 //!
 //! - `settings` is what can be chosen, `blades` lays out tufts, `spine` bends a blade: plain arithmetic.
-//! - `grow` builds in the background what a patch asks for and keeps the last good meadow.
-//! - With the feature `render`, `mesh`, `material` and `draw` draw it (`shaders/blade.wesl` is the twin of `spine`).
+//! - `components` has the entities: it lays out the blades of a patch in the background and keeps the last good ones.
+//! - With the feature `render`, `mesh`, `material` and `draw` draw it. `shaders/blade.wesl` has the formulas of `spine`.
 
 pub mod blades;
-mod grow;
+mod components;
 mod plugin;
 mod settings;
 pub mod spine;
@@ -21,7 +21,7 @@ mod material;
 #[cfg(feature = "render")]
 mod mesh;
 
-pub use grow::{GrassGround, GrassPatch, Meadow};
+pub use components::{GrassGround, GrassPatch, Meadow};
 pub use plugin::GrassPlugin;
 pub use settings::{GrassLook, GrassResponse, Sward, Tuft};
 

@@ -1,7 +1,7 @@
 //! Registers meadows, without their drawing.
 
-use super::grow::{GrassPatch, clear_patch, receive_meadows, sow_patches};
-use crate::schedule::WindwoodSystems;
+use super::components::{GrassPatch, finish_meadow_layouts, remove_meadow, start_meadow_layouts};
+use crate::schedule::{WindwoodSystems, configure_sets};
 use bevy::prelude::*;
 
 /// Lays out the blades of every [`GrassPatch`].
@@ -9,8 +9,10 @@ pub struct GrassPlugin;
 
 impl Plugin for GrassPlugin {
     fn build(&self, app: &mut App) {
+        configure_sets(app);
+        configure_sets(app);
         app.register_type::<GrassPatch>()
-            .add_observer(clear_patch)
-            .add_systems(Update, (sow_patches, receive_meadows).chain().in_set(WindwoodSystems::Grow));
+            .add_observer(remove_meadow)
+            .add_systems(Update, (start_meadow_layouts, finish_meadow_layouts).chain().in_set(WindwoodSystems::Bake));
     }
 }

@@ -1,13 +1,13 @@
-//! What can be chosen about a meadow, and the limits that keep every choice finite.
+//! The settings of a meadow, and their limits.
 
 use crate::setting::{SettingError, require, require_colour};
 use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
 
-/// Blades of one patch: some 2 million vertices, or 100 MB. Larger meadows are several patches.
-pub const MOST_BLADES: u32 = 300_000;
+/// Most blades of one patch: some 2 million vertices, or 100 MB. Larger meadows are several patches.
+const MOST_BLADES: u32 = 300_000;
 
-/// Where the blades of a patch stand and what they are like.
+/// Where the blades of a patch stand, and their sizes and shapes.
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Sward {
@@ -17,7 +17,7 @@ pub struct Sward {
     pub depth_m: f32,
     /// Tufts on a square metre: 0.001 to 10000.
     pub tufts_per_m2: f32,
-    /// What one tuft is like.
+    /// The blades of one tuft.
     pub tuft: Tuft,
     /// Share of the blades that are dry, 0 to 1.
     pub dry_share: f32,
@@ -53,8 +53,8 @@ pub struct Tuft {
     /// How far a blade droops from root to tip in still air, as a share of a right angle, 0 to 1. 0 is Zaharia's straight
     /// blade.
     pub droop: f32,
-    /// How much tufts differ in height, 0 to 1. At 0 all lengths are uniformly distributed, as Zaharia's; at 1 lush tufts have
-    /// mostly long blades and poor ones mostly short ones, within the same limits.
+    /// How much tufts differ in height, 0 to 1. At 0 all lengths are uniformly distributed, as Zaharia's. At 1 some tufts have
+    /// mostly long blades and others mostly short ones, within the same limits.
     pub clumping: f32,
 }
 
@@ -105,21 +105,21 @@ impl Default for GrassLook {
     }
 }
 
-/// How blades answer the wind.
+/// How blades respond to the wind.
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GrassResponse {
     /// Wind, in m/s at the reference height of 10 m, in which a tip turns by 0.71 of the most it can
     /// ([`TIP_ANGLE_LIMIT_RAD`](super::spine::TIP_ANGLE_LIMIT_RAD)): 0.1 to 1000. Stiff grass has a high one.
     pub half_bend_speed_m_s: f32,
-    /// Greatest angle of a blade's own trembling about each of two axes, rad: 0 to 1.
+    /// Greatest angle of a blade's own flutter about each of two axes, rad: 0 to 1.
     pub flutter_rad: f32,
-    /// Frequency of the trembling, Hz: 0 to 20.
+    /// Frequency of the flutter, Hz: 0 to 20.
     pub flutter_hz: f32,
 }
 
 impl Default for GrassResponse {
-    /// By eye: a fresh breeze of 8 m/s lays a meadow over by some 35 degrees.
+    /// By eye: a fresh breeze of 8 m/s bends a meadow by some 35 degrees.
     fn default() -> Self {
         Self { half_bend_speed_m_s: 10.0, flutter_rad: 0.08, flutter_hz: 2.2 }
     }
@@ -127,7 +127,7 @@ impl Default for GrassResponse {
 
 impl Sward {
     /// Number of tufts.
-    pub fn tufts(&self) -> u32 {
+    pub(super) fn tufts(&self) -> u32 {
         (self.width_m * self.depth_m * self.tufts_per_m2).round().max(1.0) as u32
     }
 
@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_defaults_are_valid() {
+    fn defaults_are_valid() {
         Sward::default().validate().unwrap();
         GrassLook::default().validate().unwrap();
         GrassResponse::default().validate().unwrap();
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn no_sward_has_more_blades_than_memory_bears() {
+    fn too_many_blades_are_refused() {
         let lawn = Sward { width_m: 1000.0, depth_m: 1000.0, tufts_per_m2: 10_000.0, ..Sward::default() };
         let error = lawn.validate().unwrap_err();
         assert_eq!(error.field, "tufts_per_m2");

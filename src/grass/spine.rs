@@ -1,4 +1,4 @@
-//! How a blade bends: a chain of stiff links, so that its length is kept whatever the wind. `shaders/blade.wesl` is its twin.
+//! The bend of a blade: a chain of stiff links, so its length is kept in any wind. `shaders/blade.wesl` has the same formulas.
 //!
 //! The wind turns the tip of a blade by an angle that grows with the square of the speed, as drag does, and saturates in
 //! the way of `dynamics::pose` (`U` the horizontal wind, `U_h` the half-bend speed, `L` the limit):
@@ -20,7 +20,7 @@
 use super::blades::Blade;
 use bevy::math::{Vec2, Vec3};
 
-/// Links of a blade: as few as look bent.
+/// Links of a blade: the least number that looks bent.
 pub const LINKS: usize = 3;
 /// Angle that the wind alone turns a tip by in an ever stronger storm, rad (69 degrees).
 pub const TIP_ANGLE_LIMIT_RAD: f32 = 1.2;
@@ -37,7 +37,7 @@ pub fn tip_bend(velocity: Vec2, half_bend_speed_m_s: f32) -> Vec2 {
 
 impl Blade {
     /// The angle vector at the share `s` of its length, rad, with the tip bent by `tip`.
-    pub fn angle_at(&self, s: f32, tip: Vec2) -> Vec2 {
+    pub(super) fn angle_at(&self, s: f32, tip: Vec2) -> Vec2 {
         let out = Vec2::from_angle(self.azimuth_rad);
         let rest = 1.0 - s;
         let slope = 1.0 - rest * rest * rest;
@@ -57,7 +57,7 @@ impl Blade {
 }
 
 /// The unit vector that leans from the vertical by an angle vector.
-pub fn axis(angle: Vec2) -> Vec3 {
+pub(super) fn axis(angle: Vec2) -> Vec3 {
     let size = angle.length();
     let sinc = if size > 1e-6 { size.sin() / size } else { 1.0 };
     Vec3::new(angle.x * sinc, size.cos(), angle.y * sinc)
@@ -66,12 +66,12 @@ pub fn axis(angle: Vec2) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::{
-        super::{blades::lay_out, settings::Sward},
+        super::{blades::layout_blades, settings::Sward},
         *,
     };
 
     fn meadow() -> Vec<Blade> {
-        lay_out(&Sward { width_m: 3.0, depth_m: 3.0, ..Sward::default() }, |_| 0.0)
+        layout_blades(&Sward { width_m: 3.0, depth_m: 3.0, ..Sward::default() }, |_| 0.0)
     }
 
     fn winds() -> impl Iterator<Item = Vec2> {
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_blade_keeps_its_length_in_any_wind() {
+    fn length_is_kept_in_any_wind() {
         for blade in meadow() {
             for wind in winds() {
                 let joints = blade.spine(tip_bend(wind, 10.0));
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn no_blade_grows_above_its_length_or_into_the_ground() {
+    fn blades_stay_above_the_ground_and_below_their_length() {
         for blade in meadow() {
             for wind in winds() {
                 let joints = blade.spine(tip_bend(wind, 10.0));
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn a_breeze_bends_by_its_square_and_a_storm_to_the_limit() {
+    fn bend_grows_with_the_square_of_the_speed_up_to_the_limit() {
         let bend = |speed: f32| tip_bend(Vec2::X * speed, 10.0).x;
         assert!((bend(1.0) / bend(0.5) - 4.0).abs() < 1e-3);
         assert!((bend(10.0) - TIP_ANGLE_LIMIT_RAD / 2.0_f32.sqrt()).abs() < 1e-6);
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stiff_upright_blade_bends_as_beam_theory_says() {
+    fn small_bends_match_beam_theory() {
         let blade = Blade {
             root: Vec3::ZERO,
             length_m: 1.0,
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn still_air_leaves_a_blade_in_its_own_plane() {
+    fn blades_stay_in_their_plane_in_still_air() {
         for blade in meadow() {
             let out = Vec2::from_angle(blade.azimuth_rad);
             for joint in blade.spine(Vec2::ZERO) {

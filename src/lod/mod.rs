@@ -1,80 +1,34 @@
-//! Levels of detail below the full tree, made of its meshes and textures; pure, and made once for each model.
+//! Lower levels of detail of a baked tree. Pure code, run once for each model and off the frame.
 //!
-//! Setas, Gomes & Rebordão ("Dynamic simulation of natural environments in virtual reality", section 4.1.2) draw a tree
-//! in three resolutions. The high one is the grown tree itself. Their two lower ones are here, one between, and one
-//! that they could not have:
+//! Setas, Gomes & Rebordão ("Dynamic simulation of natural environments in virtual reality", section 4.1.2) draw a tree in
+//! three resolutions. The high one is the grown tree itself. This room makes what stands for it farther away:
 //!
-//! - [`simplify`]: the tree's own meshes without thin branches, and with fewer but larger sprays of leaves.
-//! - [`cylinder`]: the paper's *medium* level, a cone for the trunk and an envelope of leaves that wears a translucent
-//!   cylindrical projection of the tree, ray-traced by a camera that turns around it ([`scene`]). It oscillates as the
-//!   trunk does, and its texture is a sequence of images of the crown's sway.
-//! - [`plain`]: the paper's *low* level, four plain polygons that stand still.
-//! - [`views`]: an atlas of parallel projections from all over the upper hemisphere, three of which are mixed towards any
-//!   eye; and how far such pictures lean in the wind ([`Lean`]).
-//!
-//! [`levels`] makes them all, in about a tenth of a second: not on the frame.
+//! | module | what |
+//! |---|---|
+//! | `decimate` | The tree's own meshes without thin branches, and with fewer but larger sprays of leaves. |
+//! | `impostor` | An atlas of views from all over the upper hemisphere, and how far such pictures lean in the wind. |
+//! | `paper` | The paper's medium level (a cone for the trunk, a textured envelope of leaves) and its low one (four polygons). |
+//! | `bake` | What `impostor` and `paper` share: a tree that rays can hit, rasterised into textures with mips. |
+//! | `screen_size` | At which size on screen one level follows another. |
+//! | `settings` | What can be chosen about all of these. |
 
-mod breeze;
-mod chart;
-pub mod cylinder;
-mod film;
-mod lean;
-pub mod level;
-mod paint;
-pub mod plain;
-pub mod profile;
-mod projection;
-pub mod scene;
-pub mod settings;
-pub mod simplify;
-mod spin;
-mod stem;
-pub mod views;
+mod bake;
+mod decimate;
+mod impostor;
+mod paper;
+mod reference_wind;
+mod screen_size;
+mod settings;
 
 #[cfg(test)]
 mod tests;
 
-pub use chart::{ViewWeight, view_direction, view_place, views_towards};
-pub use cylinder::{CylinderLevel, EnvelopeVertices};
-pub use lean::Lean;
-pub use level::{Lens, Level, LevelDistances, LevelSwitches};
-pub use plain::PlainVertices;
-pub use profile::CrownProfile;
-pub use scene::Scene;
-pub use settings::{CylinderSettings, LevelSettings, Reduction, ViewSettings};
-pub use simplify::ReducedMeshes;
-pub use views::{ViewAtlas, ViewBasis, ViewFrame};
-
-use crate::tree::{Species, TreeModel, painting::SpeciesTextures};
-
-/// All lower levels of one model.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TreeLevels {
-    /// The tree's own meshes, thinned; one for each [`Reduction`] of the settings, in their order.
-    pub reduced: Vec<ReducedMeshes>,
-    /// The paper's medium level; none for a tree that has neither leaves nor branches.
-    pub cylinder: Option<CylinderLevel>,
-    /// The paper's low level.
-    pub plain: PlainVertices,
-    /// Views from all sides.
-    pub views: ViewAtlas,
-}
-
-/// Makes all lower levels of a model of `species` that wears `textures`. The same input gives the same levels, byte by
-/// byte. `settings` should be [valid](LevelSettings::validate).
-#[must_use]
-pub fn levels(
-    species: &Species,
-    model: &TreeModel,
-    textures: &SpeciesTextures,
-    settings: &LevelSettings,
-) -> TreeLevels {
-    let scene = Scene::new(species, model, textures);
-    let cylinder = CylinderLevel::bake(&scene, species, model, &settings.cylinder);
-    TreeLevels {
-        reduced: settings.reductions.iter().map(|reduction| simplify::reduce(model, reduction)).collect(),
-        plain: plain::plain(&scene, model, cylinder.as_ref()),
-        views: ViewAtlas::bake(std::slice::from_ref(&scene), &settings.views),
-        cylinder,
-    }
-}
+pub use bake::scene::Scene;
+pub use decimate::{DecimatedMeshes, decimate, prunable_radius_m};
+pub use impostor::{atlas::ImpostorAtlas, frame::ImpostorFrame, sway::ImpostorSway};
+pub use paper::{
+    envelope::{EnvelopeLevel, EnvelopeVertices},
+    polygons::{CrossedPolygons, crossed_polygons},
+};
+pub use screen_size::{Lens, LodScreenSizes};
+pub use settings::{Decimation, EnvelopeSettings, ImpostorSettings, LodBakeSettings, MOST_LEVELS};

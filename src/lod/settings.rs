@@ -5,153 +5,155 @@ use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// Most reductions of one tree.
-const REDUCTIONS_LIMIT: usize = 8;
+/// The most levels of one tree that are meshes of its own: the grown tree and what it is decimated to.
+pub const MOST_LEVELS: usize = 3;
+const MOST_DECIMATIONS: usize = MOST_LEVELS - 1;
 
 /// All lower levels of a tree.
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct LevelSettings {
-    /// Thinned meshes, from the finest to the coarsest: none to 8.
-    pub reductions: Vec<Reduction>,
+pub struct LodBakeSettings {
+    /// Decimated meshes, from the finest to the coarsest: none to 2.
+    pub decimations: Vec<Decimation>,
     /// The envelope of leaves.
-    pub cylinder: CylinderSettings,
-    /// The atlas of views.
-    pub views: ViewSettings,
+    pub envelope: EnvelopeSettings,
+    /// The atlas of impostors.
+    pub impostor: ImpostorSettings,
 }
 
-/// How the meshes of a tree are thinned.
+/// How the meshes of a tree are decimated.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Reduction {
-    /// Branches whose root is thinner are left out, and all that grows on them; radius, m: 0 (none) to 10.
+pub struct Decimation {
+    /// Branches that are thinner at their root are left out, and all that grows on them. Radius, units: m, domain: 0 (none
+    /// is) to 10.
     pub least_radius_m: f32,
-    /// Share of the sprays that stay, enlarged so that they have the area of all: 0.02 to 1.
+    /// Share of the sprays of leaves that stay, enlarged so that they have the area of all. domain: 0.02 to 1.
     pub leaf_share: f32,
 }
 
 /// The envelope of leaves, its texture and the cone of the trunk.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct CylinderSettings {
-    /// Texels around the crown: a power of two, 8 to 1024.
+pub struct EnvelopeSettings {
+    /// Texels around the crown. domain: a power of two, 8 to 1024.
     pub width_texels: u32,
-    /// Texels along its height, in each image: a power of two, 8 to 1024.
+    /// Texels along its height, in each frame. domain: a power of two, 8 to 1024.
     pub height_texels: u32,
-    /// Images in the sequence of its sway: 1 (at rest) to 16.
-    pub images: u32,
-    /// Rays of a texel, each way: 1 to 8.
+    /// Frames in the animation of its sway. domain: 1 (at rest) to 16.
+    pub frames: u32,
+    /// Rays of a texel, each way. domain: 1 to 8.
     pub rays: u32,
-    /// Share of the crown that the envelope, while it is smooth, encloses: 0.5 to 1.
+    /// Share of the crown that the envelope, while it is smooth, encloses. domain: 0.5 to 1.
     pub enclosed: f32,
-    /// Vertices around the envelope, 3 to 64.
+    /// Vertices around the envelope. domain: 3 to 64.
     pub sides: u32,
-    /// Stretches of the envelope from its base to its top, 2 to 64.
-    pub stretches: u32,
-    /// How far its vertices leave the smooth envelope at random, to both sides, as a share of the radius: 0 to 0.5.
+    /// Segments of the envelope from its base to its top. domain: 2 to 64.
+    pub segments: u32,
+    /// How far its vertices leave the smooth envelope at random, to both sides, as a share of the radius. domain: 0 to 0.5.
     pub roughness: f32,
     /// Another seed is another roughness.
     pub seed: u64,
 }
 
-/// The atlas of views from the upper hemisphere.
+/// The atlas of impostors.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct ViewSettings {
-    /// Views each way: a power of two, 2 to 32.
-    pub across: u32,
-    /// Longer side of a view, texels: a power of two, 16 to 512. Its outline has twice as many.
-    pub view_texels: u32,
-    /// Rays of a texel of the outline, each way: 1 to 4.
+pub struct ImpostorSettings {
+    /// Views along a side of the grid of directions. domain: a power of two, 2 to 32.
+    pub views_per_side: u32,
+    /// Longer side of a view's tile in the atlas, texels; its coverage has twice as many. domain: a power of two, 16 to 512.
+    pub tile_texels: u32,
+    /// Rays of a texel of the coverage, each way. domain: 1 to 4.
     pub rays: u32,
 }
 
-impl Default for LevelSettings {
-    /// Two reductions, for trees of half and a quarter of a screen, before the envelope and the views.
+impl Default for LodBakeSettings {
+    /// Two decimations, for trees of half and a quarter of a screen, before the envelope and the impostors.
     fn default() -> Self {
         Self {
-            reductions: vec![
-                Reduction { least_radius_m: 0.02, leaf_share: 0.5 },
-                Reduction { least_radius_m: 0.05, leaf_share: 0.2 },
+            decimations: vec![
+                Decimation { least_radius_m: 0.02, leaf_share: 0.5 },
+                Decimation { least_radius_m: 0.05, leaf_share: 0.2 },
             ],
-            cylinder: CylinderSettings::default(),
-            views: ViewSettings::default(),
+            envelope: EnvelopeSettings::default(),
+            impostor: ImpostorSettings::default(),
         }
     }
 }
 
-impl Default for Reduction {
+impl Default for Decimation {
     /// The full tree.
     fn default() -> Self {
         Self { least_radius_m: 0.0, leaf_share: 1.0 }
     }
 }
 
-impl Default for CylinderSettings {
+impl Default for EnvelopeSettings {
     fn default() -> Self {
         Self {
             width_texels: 128,
             height_texels: 64,
-            images: 4,
+            frames: 4,
             rays: 2,
             enclosed: 0.95,
             sides: 12,
-            stretches: 8,
+            segments: 8,
             roughness: 0.08,
             seed: 0,
         }
     }
 }
 
-impl Default for ViewSettings {
+impl Default for ImpostorSettings {
     /// Views some 15 degrees apart.
     fn default() -> Self {
-        Self { across: 8, view_texels: 64, rays: 1 }
+        Self { views_per_side: 8, tile_texels: 64, rays: 1 }
     }
 }
 
-impl LevelSettings {
+impl LodBakeSettings {
     /// Checks every field.
     ///
     /// # Errors
     /// The first field outside its domain.
     pub fn validate(&self) -> Result<(), SettingError> {
-        if self.reductions.len() > REDUCTIONS_LIMIT {
-            let allowed = format!("at most {REDUCTIONS_LIMIT} long");
-            return Err(SettingError::new("reductions", format!("{} long", self.reductions.len()), allowed));
+        if self.decimations.len() > MOST_DECIMATIONS {
+            let allowed = format!("at most {MOST_DECIMATIONS} long");
+            return Err(SettingError::new("decimations", format!("{} long", self.decimations.len()), allowed));
         }
-        for (index, reduction) in self.reductions.iter().enumerate() {
-            reduction.validate().map_err(|error| error.inside(&format!("reductions[{index}]")))?;
+        for (index, decimation) in self.decimations.iter().enumerate() {
+            decimation.validate().map_err(|error| error.inside(&format!("decimations[{index}]")))?;
         }
-        self.cylinder.validate().map_err(|error| error.inside("cylinder"))?;
-        self.views.validate().map_err(|error| error.inside("views"))
+        self.envelope.validate().map_err(|error| error.inside("envelope"))?;
+        self.impostor.validate().map_err(|error| error.inside("impostor"))
     }
 }
 
-impl Reduction {
+impl Decimation {
     fn validate(&self) -> Result<(), SettingError> {
         require("least_radius_m", self.least_radius_m, 0.0..=10.0)?;
         require("leaf_share", self.leaf_share, 0.02..=1.0)
     }
 }
 
-impl CylinderSettings {
+impl EnvelopeSettings {
     fn validate(&self) -> Result<(), SettingError> {
         require_power_of_two("width_texels", self.width_texels, 8..=1024)?;
         require_power_of_two("height_texels", self.height_texels, 8..=1024)?;
-        require("images", self.images as f32, 1.0..=16.0)?;
+        require("frames", self.frames as f32, 1.0..=16.0)?;
         require("rays", self.rays as f32, 1.0..=8.0)?;
         require("enclosed", self.enclosed, 0.5..=1.0)?;
         require("sides", self.sides as f32, 3.0..=64.0)?;
-        require("stretches", self.stretches as f32, 2.0..=64.0)?;
+        require("segments", self.segments as f32, 2.0..=64.0)?;
         require("roughness", self.roughness, 0.0..=0.5)
     }
 }
 
-impl ViewSettings {
+impl ImpostorSettings {
     fn validate(&self) -> Result<(), SettingError> {
-        require_power_of_two("across", self.across, 2..=32)?;
-        require_power_of_two("view_texels", self.view_texels, 16..=512)?;
+        require_power_of_two("views_per_side", self.views_per_side, 2..=32)?;
+        require_power_of_two("tile_texels", self.tile_texels, 16..=512)?;
         require("rays", self.rays as f32, 1.0..=4.0)
     }
 }
@@ -169,38 +171,38 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_defaults_are_valid() {
-        LevelSettings::default().validate().unwrap();
+    fn defaults_are_valid() {
+        LodBakeSettings::default().validate().unwrap();
     }
 
     #[test]
-    fn what_is_wrong_is_named_with_its_path() {
-        let mut settings = LevelSettings::default();
-        settings.views.view_texels = 100;
+    fn errors_name_the_path_of_the_field() {
+        let mut settings = LodBakeSettings::default();
+        settings.impostor.tile_texels = 100;
         let error = settings.validate().unwrap_err().to_string();
-        assert_eq!(error, "`views.view_texels` is 100, but must be a power of two, 16 to 512");
-        settings.cylinder.enclosed = f32::NAN;
+        assert_eq!(error, "`impostor.tile_texels` is 100, but must be a power of two, 16 to 512");
+        settings.envelope.enclosed = f32::NAN;
         let error = settings.validate().unwrap_err().to_string();
-        assert_eq!(error, "`cylinder.enclosed` is NaN, but must be 0.5 to 1");
-        settings.cylinder.images = 17;
+        assert_eq!(error, "`envelope.enclosed` is NaN, but must be 0.5 to 1");
+        settings.envelope.frames = 17;
         let error = settings.validate().unwrap_err().to_string();
-        assert_eq!(error, "`cylinder.images` is 17, but must be 1 to 16");
-        settings.cylinder.images = 0;
+        assert_eq!(error, "`envelope.frames` is 17, but must be 1 to 16");
+        settings.envelope.frames = 0;
         let error = settings.validate().unwrap_err().to_string();
-        assert_eq!(error, "`cylinder.images` is 0, but must be 1 to 16");
-        settings.reductions[1].leaf_share = 0.0;
+        assert_eq!(error, "`envelope.frames` is 0, but must be 1 to 16");
+        settings.decimations[1].leaf_share = 0.0;
         let error = settings.validate().unwrap_err().to_string();
-        assert_eq!(error, "`reductions[1].leaf_share` is 0, but must be 0.02 to 1");
-        settings.reductions = vec![Reduction::default(); 9];
+        assert_eq!(error, "`decimations[1].leaf_share` is 0, but must be 0.02 to 1");
+        settings.decimations = vec![Decimation::default(); 3];
         let error = settings.validate().unwrap_err().to_string();
-        assert_eq!(error, "`reductions` is 9 long, but must be at most 8 long");
+        assert_eq!(error, "`decimations` is 3 long, but must be at most 2 long");
     }
 
     #[test]
     fn settings_survive_writing_and_reading() {
-        let settings = LevelSettings::default();
+        let settings = LodBakeSettings::default();
         let written = ron::to_string(&settings).unwrap();
-        assert_eq!(ron::from_str::<LevelSettings>(&written).unwrap(), settings);
-        assert_eq!(ron::from_str::<LevelSettings>("()").unwrap(), settings);
+        assert_eq!(ron::from_str::<LodBakeSettings>(&written).unwrap(), settings);
+        assert_eq!(ron::from_str::<LodBakeSettings>("()").unwrap(), settings);
     }
 }

@@ -6,10 +6,12 @@ use bevy::{asset::embedded_asset, prelude::*, shader::load_shader_library};
 pub(crate) fn load_shaders(app: &mut App) {
     load_shader_library!(app, "shaders/beam.wesl");
     load_shader_library!(app, "shaders/cross_fade.wesl");
+    load_shader_library!(app, "shaders/frame.wesl");
     load_shader_library!(app, "shaders/impostor.wesl");
     load_shader_library!(app, "shaders/instances.wesl");
     load_shader_library!(app, "shaders/leaf.wesl");
     load_shader_library!(app, "shaders/lighting.wesl");
+    load_shader_library!(app, "shaders/lod.wesl");
     load_shader_library!(app, "shaders/prepass_output.wesl");
     load_shader_library!(app, "shaders/rotation.wesl");
     load_shader_library!(app, "shaders/season.wesl");

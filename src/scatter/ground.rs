@@ -1,6 +1,6 @@
-//! What planting must know of the ground.
+//! The ground, as planting reads it.
 
-/// Ground on which plants stand. The room of terrain, or a game's own ground, implements it.
+/// Ground on which plants stand. This crate's terrain implements it; so may a game for its own ground.
 pub trait Ground {
     /// Height at a place, m. Where it is not a finite number there is no ground, and nothing grows.
     fn height_m(&self, x_m: f32, z_m: f32) -> f32;

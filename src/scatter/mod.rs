@@ -1,10 +1,10 @@
-//! Where plants stand.
+//! Point patterns and forest plans: where plants stand.
 //!
-//! - [`counts`] has the laws of the quadrat method: how many plants stand in a square of ground, and which law a real
-//!   pattern follows.
+//! - [`counts`] has the laws of the quadrat method: the number of plants in a square of ground, and which law a real pattern
+//!   follows.
 //! - [`quadrat`] draws point patterns from them, and counts the points of real ones.
 //! - [`plan`] is what the user gives: areas with their density, species, ages and season, and what is kept free.
-//! - [`planting`] turns a plan into plants, cell by cell, on whatever [`Ground`].
+//! - [`Planter`] turns a plan into plants, cell by cell, on any [`Ground`].
 //!
 //! This room is plain arithmetic without an app. Species are names here, and the ground is a trait.
 
@@ -12,7 +12,7 @@ pub mod counts;
 mod error;
 mod ground;
 pub mod plan;
-pub mod planting;
+mod planting;
 pub mod quadrat;
 
 pub use error::ScatterError;

@@ -1,4 +1,4 @@
-//! Trees whose beams and leaves are entities that follow the wind, on the processor.
+//! Trees whose beams and leaves are entities that follow the wind, on the CPU.
 
 use super::{
     active::{ActiveSway, FLUTTER_PERIOD_S, WeightedResponse, leaf_clock_s},
@@ -9,7 +9,7 @@ use crate::{
         leaf,
         pose::{BeamPose, TreePoser},
     },
-    tree::{Articulated, Beam, BeamOf, Grove, Grown, Leaf, LeafOf, Tree, TreeBeams, TreeLeaves, TreeModel},
+    tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, SpeciesModels, Tree, TreeBeams, TreeLeaves, TreeModel},
     wind::WindClock,
 };
 use bevy::{math::Vec3A, prelude::*};
@@ -90,14 +90,15 @@ impl TreePose {
         }
         self.beams.resize(model.beams.len(), BeamPose::REST);
         for (poser, WeightedResponse { response, .. }) in self.posers.iter_mut().zip(sway.now()) {
-            let to_wind = wind_from_world(response) * stands.rotation();
-            poser.prepare(&model.beams, response.basis.map(), &response.table.classes, to_wind, stands.scale().y);
+            let to_wind = wind_from_world(response) * world_from_local(&stands);
+            let scale = stands.affine().matrix3.determinant().abs().cbrt();
+            poser.prepare(&model.beams, response.basis.map(), &response.table.classes, to_wind, scale);
         }
         self.made_for = Some(key);
     }
 
     fn follow(&mut self, sway: &ActiveSway, time_s: f64, stands: GlobalTransform) {
-        let local_from_world = stands.rotation().inverse();
+        let local_from_world = world_from_local(&stands).transpose();
         self.wind = Vec3::ZERO;
         self.free_angles.clear();
         self.free_angles.resize(self.beams.len(), Vec3A::ZERO);
@@ -114,9 +115,15 @@ impl TreePose {
 }
 
 /// The rotation from world axes to wind coordinates.
-fn wind_from_world(response: &WindResponse) -> Quat {
+fn wind_from_world(response: &WindResponse) -> Mat3 {
     let frame = response.field.frame();
-    Quat::from_mat3(&Mat3::from_cols(frame.along, Vec3::Y, frame.across)).inverse()
+    Mat3::from_cols(frame.along, Vec3::Y, frame.across).transpose()
+}
+
+/// The rotation of a tree, after a mirror image along x if it is mirrored.
+fn world_from_local(stands: &GlobalTransform) -> Mat3 {
+    let (scale, rotation, _) = stands.to_scale_rotation_translation();
+    Mat3::from_quat(rotation) * Mat3::from_diagonal(Vec3::new(scale.x.signum(), 1.0, 1.0))
 }
 
 /// Moves beam entities to where their cross-sections are.
@@ -141,7 +148,7 @@ pub(super) fn pose_beams(
 
 /// Moves leaf entities to their anchors and turns them into the wind.
 pub(super) fn turn_leaves(
-    grove: Res<Grove>,
+    species_models: Res<SpeciesModels>,
     clock: Res<WindClock>,
     models: Res<Assets<TreeModel>>,
     trees: Query<(&Tree, &Grown, &Transform, &GlobalTransform, Has<ChildOf>, &TreePose), Without<Leaf>>,
@@ -150,7 +157,9 @@ pub(super) fn turn_leaves(
     let seconds = leaf_clock_s(clock.time_s);
     leaves.par_iter_mut().for_each(|(leaf, of, mut transform)| {
         let Ok((tree, grown, tree_transform, global, is_child, pose)) = trees.get(of.0) else { return };
-        let (Some(species), Some(model)) = (grove.get(tree.species.id()), models.get(&grown.model)) else { return };
+        let (Some(species), Some(model)) = (species_models.get(tree.species.id()), models.get(&grown.model)) else {
+            return;
+        };
         let Some(cluster) = model.skeleton.clusters.get(leaf.index as usize) else { return };
         let beam = cluster.beam as usize;
         let (Some(rest), Some(beam_pose)) = (model.beams.get(beam), pose.beams.get(beam)) else { return };

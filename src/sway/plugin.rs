@@ -5,7 +5,13 @@ use super::{
     articulated::{articulate_trees, pose_beams, pose_trees, turn_leaves},
     response::SwaySettings,
 };
-use crate::{schedule::WindwoodSystems, timing::timed};
+use crate::{
+    plugin_checks::require_plugin,
+    schedule::{WindwoodSystems, configure_sets},
+    timing::timed,
+    tree::TreePlugin,
+    wind::WindPlugin,
+};
 use bevy::prelude::*;
 
 /// The motion of trees in the wind: the response tables, and the entities of [`Articulated`](crate::tree::Articulated) trees.
@@ -13,17 +19,19 @@ pub struct SwayPlugin;
 
 impl Plugin for SwayPlugin {
     fn build(&self, app: &mut App) {
+        require_plugin::<Self, WindPlugin>(app);
+        require_plugin::<Self, TreePlugin>(app);
+        configure_sets(app);
         app.register_type::<SwaySettings>()
             .init_resource::<SwaySettings>()
             .init_resource::<ActiveSway>()
-            .configure_sets(PostUpdate, WindwoodSystems::Pose.before(TransformSystems::Propagate))
             .configure_sets(PostUpdate, WindwoodSystems::Pose.run_if(is_windy));
         let tables = timed!(app, rebuild_tables, fade_tables);
         let articulate = timed!(app, articulate_trees);
         let pose_trees = timed!(app, pose_trees);
         let pose_parts = timed!(app, pose_beams, turn_leaves);
         app.add_systems(PreUpdate, tables.chain().after(WindwoodSystems::AdvanceWind))
-            .add_systems(Update, articulate.after(WindwoodSystems::Grow))
+            .add_systems(Update, articulate.after(WindwoodSystems::Bake))
             .add_systems(PostUpdate, (pose_trees, pose_parts).chain().in_set(WindwoodSystems::Pose));
     }
 }

@@ -3,18 +3,14 @@
 use crate::{
     dynamics::{
         direction_map::LoadCoefficients,
+        frequency_classes::FrequencyClasses,
         load_basis::{LoadBasis, LoadBasisKind},
-        response::{FrequencyClasses, ResponseTable},
+        response::ResponseTable,
     },
     wind::{REFERENCE_HEIGHT_M, WindField, cross_flow_pressure},
 };
 use bevy::prelude::*;
 use std::sync::Arc;
-#[cfg(feature = "render")]
-use {
-    super::rows::pack_slot,
-    std::sync::{Mutex, PoisonError},
-};
 
 /// How trees answer the wind.
 #[derive(Resource, Reflect, Clone, Debug, PartialEq)]
@@ -60,9 +56,6 @@ pub struct WindResponse {
     pub table: ResponseTable,
     /// No beam of any direction and class is pressed harder at any place and time, m²/s².
     pub strongest_pressure: f32,
-    /// All of it as the shaders read it, until it is sent.
-    #[cfg(feature = "render")]
-    packed: Mutex<Option<Vec<u8>>>,
 }
 
 impl WindResponse {
@@ -85,28 +78,7 @@ impl WindResponse {
             settings.damping_ratio,
         );
         let strongest_pressure = strongest_pressure(&basis, &table);
-        Self {
-            field,
-            basis,
-            table,
-            strongest_pressure,
-            #[cfg(feature = "render")]
-            packed: Mutex::default(),
-        }
-    }
-
-    /// Packs it for the shaders. These are some 20 MB, so not on the frame.
-    #[cfg(feature = "render")]
-    pub(super) fn pack(&self) {
-        let packed = pack_slot(self);
-        *self.packed.lock().unwrap_or_else(PoisonError::into_inner) = Some(packed);
-    }
-
-    /// What was packed; whoever asks again has it packed anew.
-    #[cfg(feature = "render")]
-    pub(super) fn take_packed(&self) -> Vec<u8> {
-        let packed = self.packed.lock().unwrap_or_else(PoisonError::into_inner).take();
-        packed.unwrap_or_else(|| pack_slot(self))
+        Self { field, basis, table, strongest_pressure }
     }
 
     /// Where a tree at `position` stands in the periodic tables: its lateral column, and the time of the field there, s.

@@ -1,6 +1,11 @@
 //! Ground as an entity.
 
-use super::{Cover, Heightfield, TerrainError, error::require, pyramid::PyramidShape};
+use super::{
+    chunk_key::CHUNK_CELLS,
+    heightfield::{Cover, Heightfield},
+    pyramid::PyramidShape,
+};
+use crate::setting::{SettingError, require};
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -60,11 +65,11 @@ impl TerrainSettings {
     /// Checks every setting.
     ///
     /// # Errors
-    /// [`TerrainError::OutOfRange`] for the first that is wrong.
-    pub fn validate(&self) -> Result<(), TerrainError> {
+    /// [`SettingError`] for the first that is wrong.
+    pub fn validate(&self) -> Result<(), SettingError> {
         require("finest_cell_m", self.finest_cell_m, 0.125..=64.0)?;
         if self.finest_cell_m.log2().fract() != 0.0 {
-            return Err(TerrainError::out_of_range("finest_cell_m", self.finest_cell_m, "a power of two"));
+            return Err(SettingError::new("finest_cell_m", self.finest_cell_m, "a power of two"));
         }
         require("reach_m", self.reach_m, 100.0..=2e5)?;
         require("detail", self.detail, 1.5..=8.0)?;
@@ -75,7 +80,7 @@ impl TerrainSettings {
     /// The pyramid that reaches so far: its coarsest squares are about as wide as the reach, so that there are some ten.
     #[must_use]
     pub fn shape(&self) -> PyramidShape {
-        let finest_side_m = self.finest_cell_m * super::chunk::CHUNK_CELLS as f32;
+        let finest_side_m = self.finest_cell_m * CHUNK_CELLS as f32;
         PyramidShape {
             finest_cell_m: f64::from(self.finest_cell_m),
             coarsest_level: (self.reach_m / finest_side_m).log2().floor().max(0.0) as u32,
@@ -145,8 +150,8 @@ impl GroundLook {
     /// Checks every setting.
     ///
     /// # Errors
-    /// [`TerrainError::OutOfRange`] for the first that is wrong.
-    pub fn validate(&self) -> Result<(), TerrainError> {
+    /// [`SettingError`] for the first that is wrong.
+    pub fn validate(&self) -> Result<(), SettingError> {
         let colours = [
             ("grass", self.grass),
             ("dry_grass", self.dry_grass),
@@ -175,7 +180,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn defaults_are_valid_and_slips_are_named() {
+    fn defaults_are_valid_and_errors_name_the_field() {
         TerrainSettings::default().validate().unwrap();
         GroundLook::default().validate().unwrap();
         let error = TerrainSettings { finest_cell_m: 3.0, ..default() }.validate().unwrap_err().to_string();
@@ -187,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn some_ten_of_the_coarsest_squares_reach_as_far_as_asked() {
+    fn the_coarsest_squares_are_about_as_wide_as_the_reach() {
         for reach_m in [100.0, 5000.0, 60_000.0] {
             let shape = TerrainSettings { reach_m, ..default() }.shape();
             let side_m = 64.0 * f64::from(1_u32 << shape.coarsest_level);

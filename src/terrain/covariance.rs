@@ -22,11 +22,8 @@
 //! are taken to be Whittle A, Whittle B and the hole exponential; the table of Mantoglou & Wilson was not available to
 //! confirm this.
 
-use super::{
-    TerrainError,
-    bessel_integrals::{SERIES_LIMIT, j0_integral, j0_power_tail, j0_series, power_law_constant},
-    error::require,
-};
+use super::bessel_integrals::{SERIES_LIMIT, j0_integral, j0_power_tail, j0_series, power_law_constant};
+use crate::setting::{SettingError, require};
 use bevy::reflect::Reflect;
 use puruspe::{Jn, Kn};
 use serde::{Deserialize, Serialize};
@@ -142,8 +139,8 @@ impl CovarianceModel {
     /// Checks the dimension of a fractal; all other models have nothing to check.
     ///
     /// # Errors
-    /// [`TerrainError::OutOfRange`] for a dimension outside its domain.
-    pub fn validate(&self) -> Result<(), TerrainError> {
+    /// [`SettingError`] for a dimension outside its domain.
+    pub fn validate(&self) -> Result<(), SettingError> {
         match *self {
             Self::Fractal { dimension } => require("dimension", dimension, FRACTAL_DIMENSION),
             _ => Ok(()),
@@ -189,7 +186,7 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    /// C / s^2 = int J0(w x) dF(w) by the midpoint rule over narrow strata: nothing but F is known.
+    /// C / s^2 = int J0(w x) dF(w) by the midpoint rule over narrow intervals: nothing but F is known.
     fn correlation_from_spectrum(model: CovarianceModel, x: f64) -> f64 {
         let (step, limit) = (2e-4_f64, 3e4);
         let (mut low, mut below, mut sum) = (0.0, 0.0, 0.0);

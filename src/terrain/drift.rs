@@ -1,6 +1,6 @@
 //! The drift of a map: what is not random about it, and is taken away before its covariance is estimated.
 
-use super::ElevationGrid;
+use super::elevation_grid::ElevationGrid;
 use bevy::{math::DVec2, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +25,7 @@ pub struct FoundDrift {
 }
 
 /// The drift of `grid`, and the elevations without it, m.
-pub(super) fn remove(grid: &ElevationGrid, drift: Drift) -> (FoundDrift, Vec<f64>) {
+pub(super) fn remove_drift(grid: &ElevationGrid, drift: Drift) -> (FoundDrift, Vec<f64>) {
     let mean_m = grid.heights_m().iter().map(|&height| f64::from(height)).sum::<f64>() / grid.heights_m().len() as f64;
     let gradient = match drift {
         Drift::Mean => DVec2::ZERO,
@@ -60,16 +60,16 @@ mod tests {
     use approx::assert_relative_eq;
 
     #[test]
-    fn a_plane_is_found_and_nothing_is_left_of_it() {
+    fn a_plane_is_removed_whole() {
         let height = |index: u32| 7.0 + 0.5 * f64::from(index % 6) - 0.25 * f64::from(index / 6);
         let heights_m = (0..30).map(|index| height(index) as f32).collect();
         let grid = ElevationGrid::new(6, 5, DVec2::new(2.0, 4.0), heights_m).unwrap();
-        let (found, rest) = remove(&grid, Drift::Plane);
+        let (found, rest) = remove_drift(&grid, Drift::Plane);
         assert_relative_eq!(found.gradient.x, 0.25, epsilon = 1e-12);
         assert_relative_eq!(found.gradient.y, -0.0625, epsilon = 1e-12);
         assert!(rest.iter().all(|value| value.abs() < 1e-12));
 
-        let (found, rest) = remove(&grid, Drift::Mean);
+        let (found, rest) = remove_drift(&grid, Drift::Mean);
         assert_eq!(found.gradient, DVec2::ZERO);
         assert_relative_eq!(rest.iter().sum::<f64>(), 0.0, epsilon = 1e-9);
         assert_relative_eq!(rest[0], height(0) - found.mean_m, epsilon = 1e-12);

@@ -2,7 +2,11 @@
 //!
 //! elevation = `base_m` + `metres_per_unit` x sample
 
-use super::{ElevationGrid, TerrainError, elevation_grid::require_size, error::require};
+use super::{
+    elevation_grid::{ElevationGrid, require_size},
+    error::TerrainError,
+};
+use crate::setting::{SettingError, require};
 use bevy::{math::DVec2, reflect::Reflect};
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, Limits, codecs::png::PngDecoder};
 use serde::{Deserialize, Serialize};
@@ -60,7 +64,7 @@ impl ElevationScale {
         DVec2::new(self.cell_x_m, self.cell_z_m)
     }
 
-    fn validate(&self) -> Result<(), TerrainError> {
+    fn validate(&self) -> Result<(), SettingError> {
         require("metres_per_unit", self.metres_per_unit, METRES_PER_UNIT)?;
         require("base_m", self.base_m, BASE_M)
     }

@@ -1,6 +1,7 @@
 //! Elevations on a regular grid: what maps are read from, and what variograms are estimated from.
 
-use super::{Heightfield, TerrainError, error::require};
+use super::{error::TerrainError, heightfield::Heightfield};
+use crate::setting::{SettingError, require};
 use bevy::math::DVec2;
 use std::ops::RangeInclusive;
 
@@ -25,7 +26,7 @@ impl ElevationGrid {
     /// The grid of `columns` x `rows` elevations, with neighbours `cell_m` apart along x (east) and z (south).
     ///
     /// # Errors
-    /// [`TerrainError::OutOfRange`] for a side outside 2 to 16384, more than 2^26 samples, or a cell outside 0.001 m to
+    /// [`TerrainError::Setting`] for a side outside 2 to 16384, more than 2^26 samples, or a cell outside 0.001 m to
     /// 120 km; [`TerrainError::Count`] where there is not one height for each place;
     /// [`TerrainError::NotFinite`] for the first height that is no finite number.
     pub fn new(columns: u32, rows: u32, cell_m: DVec2, heights_m: Vec<f32>) -> Result<Self, TerrainError> {
@@ -94,7 +95,7 @@ impl ElevationGrid {
 }
 
 /// Refuses a grid that is empty or too large to hold.
-pub(super) fn require_size(columns: u32, rows: u32) -> Result<(), TerrainError> {
+pub(super) fn require_size(columns: u32, rows: u32) -> Result<(), SettingError> {
     require("columns", columns, SIDE)?;
     require("rows", rows, SIDE)?;
     require("columns x rows", u64::from(columns) * u64::from(rows), 0..=MOST_SAMPLES)
@@ -105,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_grid_is_refused_by_name() {
+    fn invalid_grids_are_refused_by_name() {
         let error = |columns, rows, cell_m, heights: &[f32]| {
             ElevationGrid::new(columns, rows, cell_m, heights.to_vec()).unwrap_err().to_string()
         };

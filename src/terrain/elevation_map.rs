@@ -8,7 +8,14 @@
 //! Beyond the edge the outermost samples go on for ever, so that the ground runs out level within one cell, without a
 //! kink.
 
-use super::{ElevationGrid, Heightfield, TerrainError, error::require, heightfield::finite};
+use super::{
+    elevation_grid::ElevationGrid,
+    heightfield::{Heightfield, finite},
+};
+use crate::{
+    interpolation::catmull_rom,
+    setting::{SettingError, require},
+};
 use bevy::{math::DVec2, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
@@ -49,8 +56,8 @@ impl ElevationMap {
     /// The ground of `grid`, which lies in the world as `placement` says.
     ///
     /// # Errors
-    /// [`TerrainError::OutOfRange`] for a place outside its domain.
-    pub fn new(grid: ElevationGrid, placement: MapPlacement) -> Result<Self, TerrainError> {
+    /// [`SettingError`] for a place outside its domain.
+    pub fn new(grid: ElevationGrid, placement: MapPlacement) -> Result<Self, SettingError> {
         require("west_m", placement.west_m, PLACE_M)?;
         require("north_m", placement.north_m, PLACE_M)?;
         Ok(Self { grid, placement })
@@ -132,15 +139,8 @@ impl Position {
         [-0.5 * s, -0.5 * t, 0.5 * s, 0.5 * t]
     }
 
-    /// Catmull-Rom.
     fn cubic(&self) -> [f64; 4] {
-        let t = self.t;
-        [
-            0.5 * t * (t * (2.0 - t) - 1.0),
-            1.0 + 0.5 * t * t * (3.0 * t - 5.0),
-            0.5 * t * (1.0 + t * (4.0 - 3.0 * t)),
-            0.5 * t * t * (t - 1.0),
-        ]
+        catmull_rom(self.t)
     }
 
     /// Its derivative.

@@ -14,8 +14,11 @@
 //! octave of lags weighs the same.
 
 use super::{
-    Anisotropy, CovarianceModel, LagClass, TerrainError, TurningBandsSettings, Variogram, covariance::FRACTAL_DIMENSION,
+    covariance::{CovarianceModel, FRACTAL_DIMENSION},
+    settings::{Anisotropy, TurningBandsSettings},
+    variogram::{LagClass, Variogram},
 };
+use crate::setting::SettingError;
 use bevy::math::DVec2;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, storage::Owned};
@@ -85,8 +88,8 @@ impl Fit {
 /// is.
 ///
 /// # Errors
-/// [`TerrainError::OutOfRange`] where the variogram has fewer classes than a model has unknowns.
-pub fn fit_models(variogram: &Variogram, models: &[CovarianceModel]) -> Result<Vec<Fit>, TerrainError> {
+/// [`SettingError`] where the variogram has fewer classes than a model has unknowns.
+pub fn fit_models(variogram: &Variogram, models: &[CovarianceModel]) -> Result<Vec<Fit>, SettingError> {
     let mut fits = models.iter().map(|&model| fit_model(variogram, model)).collect::<Result<Vec<_>, _>>()?;
     fits.sort_by(|a, b| a.residual.total_cmp(&b.residual));
     Ok(fits)
@@ -96,20 +99,20 @@ pub fn fit_models(variogram: &Variogram, models: &[CovarianceModel]) -> Result<V
 ///
 /// # Errors
 /// As [`fit_models`].
-pub fn fit_model(variogram: &Variogram, model: CovarianceModel) -> Result<Fit, TerrainError> {
+pub fn fit_model(variogram: &Variogram, model: CovarianceModel) -> Result<Fit, SettingError> {
     let data = Data::new(variogram, model);
     let starts = data.starts();
     let unknowns = starts.first().map_or(0, DVector::len);
     if data.classes.len() < unknowns {
         let allowed = format!("at least {unknowns}, the unknowns of the {} model", model.name());
-        return Err(TerrainError::out_of_range("classes of the variogram", data.classes.len(), allowed));
+        return Err(SettingError::new("classes of the variogram", data.classes.len(), allowed));
     }
     let fits = starts.into_iter().map(|unknowns| {
         let (problem, _) = LevenbergMarquardt::new().with_patience(60).minimize(Problem { data: &data, unknowns });
         data.fit(&problem.unknowns)
     });
     let best = fits.min_by(|a, b| a.residual.total_cmp(&b.residual));
-    best.ok_or_else(|| TerrainError::out_of_range("starts of the fit", 0, "at least 1"))
+    best.ok_or_else(|| SettingError::new("starts of the fit", 0, "at least 1"))
 }
 
 /// A variogram to fit, and its units.

@@ -1,9 +1,10 @@
 //! The fine structure of the ground, as Fourier textures (Zaharia, section 2.4): four kinds of light and dark in the four
 //! channels of one texture that tiles.
 
+use crate::setting::SettingError;
 use crate::texture::{
-    Canvas, TextureData, blurred,
-    fourier::{Combination, FourierTexture, InvalidFourierTexture, threshold_above},
+    LinearImage, TextureData, blurred,
+    fourier::{Combination, FourierTexture, threshold_above},
 };
 use bevy::math::{Mat2, Vec2};
 use std::f32::consts::TAU;
@@ -34,14 +35,14 @@ pub(super) fn ground_texture() -> TextureData {
         kind(3.0, 7, Combination::Product, 23),
         kind(2.0, 4, Combination::Sum, 31),
     ];
-    let mut canvas = Canvas::filled(SIZE, [0.5; 4]);
+    let mut image = LinearImage::filled(SIZE, [0.5; 4]);
     for (channel, kind) in kinds.iter().enumerate() {
         // The settings above are valid; a plain ground would do if they were not.
         if let Ok(values) = kind.values() {
-            spread(&mut canvas, channel, values);
+            spread(&mut image, channel, values);
         }
     }
-    canvas.into_linear_texture()
+    image.into_linear_texture()
 }
 
 /// Turns by 27 degrees and shrinks by the square root of 5, so that what tiles before tiles after.
@@ -50,7 +51,7 @@ const TURN: Mat2 = Mat2::from_cols(Vec2::new(2.0, 1.0), Vec2::new(-1.0, 2.0));
 impl Kind {
     /// Its value at each texel. The crests of one Fourier texture run along the axes, and a meadow of it looks like scales;
     /// two that are turned against one another have no direction that the eye would find.
-    fn values(&self) -> Result<Vec<f32>, InvalidFourierTexture> {
+    fn values(&self) -> Result<Vec<f32>, SettingError> {
         let waves = |cycles: f32, seed| {
             let first_frequency_rad = cycles * TAU;
             let Self { terms, combination, .. } = *self;
@@ -69,9 +70,9 @@ impl Kind {
     }
 }
 
-fn spread(canvas: &mut Canvas, channel: usize, values: Vec<f32>) {
+fn spread(image: &mut LinearImage, channel: usize, values: Vec<f32>) {
     let (dark, light) = (threshold_above(values.clone(), 0.9), threshold_above(values.clone(), 0.1));
-    for (texel, value) in canvas.texels.iter_mut().zip(values) {
+    for (texel, value) in image.texels.iter_mut().zip(values) {
         texel[channel] = ((value - dark) / (light - dark).max(1e-6)).clamp(0.0, 1.0);
     }
 }
@@ -93,16 +94,16 @@ mod tests {
 
     /// From afar it would show, repeat after repeat.
     #[test]
-    fn what_is_coarser_than_blades_is_taken_out() {
+    fn fine_kinds_have_no_coarse_waves() {
         const BLOCKS: usize = 16;
         const SIDE: usize = SIZE / BLOCKS;
         // The deviation of the means of squares that are half as wide as the first waves.
         let unevenness = |is_fine: bool| {
             let kind = Kind { is_fine, ..BLADES };
-            let mut canvas = Canvas::filled(SIZE, [0.5; 4]);
-            spread(&mut canvas, 0, kind.values().unwrap());
+            let mut image = LinearImage::filled(SIZE, [0.5; 4]);
+            spread(&mut image, 0, kind.values().unwrap());
             let mut means = [0.0; BLOCKS * BLOCKS];
-            for (index, texel) in canvas.texels.iter().enumerate() {
+            for (index, texel) in image.texels.iter().enumerate() {
                 means[index / SIZE / SIDE * BLOCKS + index % SIZE / SIDE] += texel[0] / (SIDE * SIDE) as f32;
             }
             let mean = means.iter().sum::<f32>() / means.len() as f32;
@@ -114,7 +115,7 @@ mod tests {
 
     /// The step across the border is no greater than steps inside.
     #[test]
-    fn it_tiles() {
+    fn the_texture_tiles() {
         let texture = ground_texture();
         let texel = |x: usize, y: usize, channel: usize| i32::from(texture.mips[0][4 * (y * SIZE + x) + channel]);
         for channel in 0..4 {

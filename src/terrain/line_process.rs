@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn the_process_repeats_after_its_period_and_knows_no_end() {
+    fn the_process_is_periodic_and_finite_everywhere() {
         let line = process(&[(3, 1.0, 0.3), (9, 2.0, 4.0)]);
         for coordinate in [0.25, 5.5, 63.75] {
             assert_eq!(line.value(coordinate), line.value(coordinate + 64.0 * 1e9));

@@ -1,7 +1,7 @@
 //! The material of the ground.
 
 use super::components::GroundLook;
-use crate::shading::lay_out;
+use crate::render::pipeline::specialize;
 use bevy::{
     material::OpaqueRendererMethod,
     mesh::{MeshVertexAttribute, MeshVertexBufferLayoutRef, VertexFormat},
@@ -117,6 +117,6 @@ impl MaterialExtension for GroundExtension {
             ATTRIBUTE_MARKS.at_shader_location(8),
         ];
         // The colour of a vertex carries the woods to its fragments.
-        lay_out(descriptor, layout, &attributes, &["VERTEX_COLORS"])
+        specialize(descriptor, layout, &attributes, &["VERTEX_COLORS"])
     }
 }

@@ -1,6 +1,6 @@
 //! The ground: random fields with the covariance of real terrain, maps, and surfaces formed by hand.
 //!
-//! After Setas et al., *Dynamic simulation of natural environments* (section 2.1), and Zaharia, *Procedural modeling of
+//! After Setas et al., *Dynamic Simulation of Natural Environments in Virtual Reality* (section 2.1), and Zaharia, *Procedural modeling of
 //! natural phenomena* (section 2.4):
 //!
 //! 1. A [`CovarianceModel`] says how alike the elevations of two places are, by their distance.
@@ -28,16 +28,28 @@
 //! ```
 //!
 //! 5. [`Terrain`] is ground as an entity: a pyramid of [`chunk`]s about every [`Viewpoint`](crate::Viewpoint), finer where
-//!    somebody is near ([`pyramid`]), built in the background.
+//!    a viewer is near ([`pyramid`]), built in the background.
 //!
-//! All but `components`, `material`, `stream` and `plugin` is plain arithmetic without an app.
+//! | files | what |
+//! |---|---|
+//! | `error` | What can be wrong with settings, maps and files. |
+//! | `heightfield` | What all ground has: a height, a normal and a slope anywhere. |
+//! | `covariance`, `bessel_integrals`, `spectral_sampling`, `line_process`, `turning_bands`, `settings` | Random fields. |
+//! | `elevation_file`, `elevation_grid`, `elevation_map` | Maps: read, held, interpolated. |
+//! | `drift`, `autocorrelation`, `variogram`, `fit` | Estimates from maps. |
+//! | `spline_ground` | Ground formed by control points. |
+//! | `chunk_key`, `chunk`, `pyramid`, `ground_texture` | What is drawn of it. |
+//! | `components`, `ecs`, `material`, `plugin` | Ground as entities. All others are plain arithmetic without an app. |
 
 mod autocorrelation;
 mod bessel_integrals;
 pub mod chunk;
+mod chunk_key;
 mod components;
 mod covariance;
 mod drift;
+#[cfg(feature = "render")]
+mod ecs;
 mod elevation_file;
 mod elevation_grid;
 mod elevation_map;
@@ -53,10 +65,8 @@ mod material;
 mod plugin;
 pub mod pyramid;
 mod settings;
+mod spectral_sampling;
 mod spline_ground;
-mod strata;
-#[cfg(feature = "render")]
-mod stream;
 mod turning_bands;
 mod variogram;
 
@@ -75,6 +85,6 @@ pub use turning_bands::TurningBands;
 pub use variogram::{LagClass, Variogram, VariogramSettings};
 #[cfg(feature = "render")]
 pub use {
+    ecs::stream::{TerrainChunk, TerrainChunks},
     plugin::TerrainDrawPlugin,
-    stream::{TerrainChunk, TerrainChunks},
 };

@@ -4,10 +4,10 @@
 //! four are there, so that the ground never has a hole, however fast the viewer flies; and coarse squares are built before
 //! fine ones, so that there is always something to draw.
 
-use super::chunk::{ChunkKey, Edge, Seams};
+use super::chunk_key::{ChunkKey, Edge, Seams};
 use bevy::{math::DVec2, platform::collections::HashMap};
 
-/// Where somebody looks from.
+/// Where a viewer is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eye {
     /// (x, z), m.
@@ -30,8 +30,8 @@ pub struct PyramidShape {
     pub reach_m: f64,
 }
 
-/// Distance at which what was split is joined again, over that at which it was split: what a viewer on a border does not
-/// make flicker.
+/// Distance at which what was split is joined again, over that at which it was split: a viewer on a border makes nothing
+/// flicker.
 const HYSTERESIS: f64 = 1.1;
 
 /// The squares that are there, and those that should be.
@@ -42,9 +42,9 @@ pub struct Pyramid {
     /// Squares in the order in which they should be built, the last first.
     queue: Vec<ChunkKey>,
     drawn: Vec<(ChunkKey, Seams)>,
-    forgotten: Vec<ChunkKey>,
+    dropped: Vec<ChunkKey>,
     roots: Vec<ChunkKey>,
-    looks: u64,
+    selections: u64,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -54,7 +54,7 @@ struct Node {
     ready: bool,
     /// How it is drawn, if it is.
     drawn: Option<Seams>,
-    /// The look that last wanted it.
+    /// The number of the selection that last wanted it.
     wanted: u64,
 }
 
@@ -67,9 +67,9 @@ impl Pyramid {
             nodes: HashMap::default(),
             queue: Vec::new(),
             drawn: Vec::new(),
-            forgotten: Vec::new(),
+            dropped: Vec::new(),
             roots: Vec::new(),
-            looks: 0,
+            selections: 0,
         }
     }
 
@@ -79,28 +79,28 @@ impl Pyramid {
         &self.shape
     }
 
-    /// Finds out what is wanted from these places. Squares that no longer are go to [`forgotten`](Self::forgotten).
-    pub fn look(&mut self, eyes: &[Eye]) {
-        self.looks += 1;
+    /// Selects the squares that are wanted from these places. Those that no longer are go to [`dropped`](Self::dropped).
+    pub fn select(&mut self, eyes: &[Eye]) {
+        self.selections += 1;
         self.queue.clear();
         self.find_roots(eyes);
         for index in 0..self.roots.len() {
             self.want(self.roots[index], eyes);
         }
-        let (looks, forgotten) = (self.looks, &mut self.forgotten);
+        let (selections, dropped) = (self.selections, &mut self.dropped);
         self.nodes.retain(|key, node| {
-            let stays = node.wanted == looks;
+            let stays = node.wanted == selections;
             if !stays && node.asked {
-                forgotten.push(*key);
+                dropped.push(*key);
             }
             stays
         });
-        // What is forgotten comes out of a hash map.
-        self.forgotten.sort_unstable();
+        // They come out of a hash map.
+        self.dropped.sort_unstable();
         let shape = self.shape;
         let distance_m = |key: &ChunkKey| eyes.iter().map(|eye| shape.distance_m(*key, eye)).fold(f64::MAX, f64::min);
         self.queue.sort_by_cached_key(|key| (key.level, std::cmp::Reverse(distance_m(key) as u64), *key));
-        self.draw();
+        self.select_drawn();
     }
 
     /// The squares of the coarsest level within reach.
@@ -125,12 +125,12 @@ impl Pyramid {
 
     /// Wants a square, and the finer ones inside that an eye is near to.
     fn want(&mut self, key: ChunkKey, eyes: &[Eye]) {
-        let (looks, shape) = (self.looks, self.shape);
+        let (selections, shape) = (self.selections, self.shape);
         let node = self.nodes.entry(key).or_default();
         let near_m = shape.detail * key.side_m(shape.finest_cell_m) * if node.split { HYSTERESIS } else { 1.0 };
         let is_near = |eye: &Eye| shape.distance_m(key, eye) < near_m;
         node.split = key.level > 0 && eyes.iter().any(is_near);
-        node.wanted = looks;
+        node.wanted = selections;
         if !node.asked {
             self.queue.push(key);
         }
@@ -150,7 +150,7 @@ impl Pyramid {
 
     /// Whether a square that has been asked for is still wanted.
     #[must_use]
-    pub fn wants(&self, key: ChunkKey) -> bool {
+    pub fn awaits(&self, key: ChunkKey) -> bool {
         self.nodes.get(&key).is_some_and(|node| node.asked && !node.ready)
     }
 
@@ -168,8 +168,8 @@ impl Pyramid {
     }
 
     /// Takes out those squares that have been asked for, and are no longer wanted.
-    pub fn forgotten(&mut self) -> std::vec::Drain<'_, ChunkKey> {
-        self.forgotten.drain(..)
+    pub fn dropped(&mut self) -> std::vec::Drain<'_, ChunkKey> {
+        self.dropped.drain(..)
     }
 
     /// What is drawn now, and how much coarser the ground about each square is.
@@ -185,11 +185,11 @@ impl Pyramid {
     }
 
     /// Chooses what is drawn among the squares that are there.
-    pub fn draw(&mut self) {
+    pub fn select_drawn(&mut self) {
         self.drawn.clear();
         self.nodes.values_mut().for_each(|node| node.drawn = None);
         for index in 0..self.roots.len() {
-            self.draw_within(self.roots[index]);
+            self.select_drawn_within(self.roots[index]);
         }
         for index in 0..self.drawn.len() {
             let key = self.drawn[index].0;
@@ -202,11 +202,11 @@ impl Pyramid {
         }
     }
 
-    fn draw_within(&mut self, key: ChunkKey) {
+    fn select_drawn_within(&mut self, key: ChunkKey) {
         let is_ready = |key: &ChunkKey| self.nodes.get(key).is_some_and(|node| node.ready);
         let splits = self.nodes.get(&key).is_some_and(|node| node.split);
         if splits && key.children().iter().all(is_ready) {
-            key.children().into_iter().for_each(|child| self.draw_within(child));
+            key.children().into_iter().for_each(|child| self.select_drawn_within(child));
         } else if let Some(node) = self.nodes.get_mut(&key).filter(|node| node.ready) {
             node.drawn = Some(Seams::default());
             self.drawn.push((key, Seams::default()));

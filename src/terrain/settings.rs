@@ -1,6 +1,7 @@
 //! What a user can choose about a random field of ground, and the limits that keep every choice finite.
 
-use super::{CovarianceModel, TerrainError, error::require};
+use super::covariance::CovarianceModel;
+use crate::setting::{SettingError, require};
 use bevy::{
     math::{DMat2, DVec2},
     reflect::Reflect,
@@ -104,8 +105,8 @@ impl TurningBandsSettings {
     /// Checks every setting.
     ///
     /// # Errors
-    /// [`TerrainError::OutOfRange`] for the first that is outside its domain.
-    pub fn validate(&self) -> Result<(), TerrainError> {
+    /// [`SettingError`] for the first that is outside its domain.
+    pub fn validate(&self) -> Result<(), SettingError> {
         self.model.validate().map_err(|error| error.inside("model"))?;
         require("scale_m", self.scale_m, LENGTH_M)?;
         require("deviation_m", self.deviation_m, DEVIATION_M)?;
@@ -118,14 +119,14 @@ impl TurningBandsSettings {
         self.validate_resolution()
     }
 
-    fn validate_resolution(&self) -> Result<(), TerrainError> {
+    fn validate_resolution(&self) -> Result<(), SettingError> {
         let most_samples = 2f64.powf((MOST_TABLE_SAMPLES / f64::from(self.lines)).log2().floor());
         let finest_m = PERIOD_SCALES * SAMPLES_PER_WAVELENGTH * self.scale_m / most_samples;
         if (finest_m..=self.scale_m).contains(&self.finest_wavelength_m) {
             return Ok(());
         }
         let allowed = format!("{finest_m} to {} with this `scale_m` and `lines`", self.scale_m);
-        Err(TerrainError::out_of_range("finest_wavelength_m", self.finest_wavelength_m, allowed))
+        Err(SettingError::new("finest_wavelength_m", self.finest_wavelength_m, allowed))
     }
 }
 

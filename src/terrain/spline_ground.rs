@@ -11,7 +11,11 @@
 //! and where they end. (Zaharia enters 50 points for 5 adjacent patches; here they are as many as wanted.) A control
 //! point draws the surface towards itself, which reaches it only where its neighbours agree with it.
 
-use super::{Heightfield, TerrainError, error::require, heightfield::finite};
+use super::{
+    error::TerrainError,
+    heightfield::{Heightfield, finite},
+};
+use crate::setting::require;
 use bevy::{math::DVec2, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
@@ -81,7 +85,7 @@ impl SplineGroundSettings {
     /// Checks every setting.
     ///
     /// # Errors
-    /// [`TerrainError::OutOfRange`] or [`TerrainError::Count`] for the first that is wrong.
+    /// [`TerrainError::Setting`] or [`TerrainError::Count`] for the first that is wrong.
     pub fn validate(&self) -> Result<(), TerrainError> {
         require("cell_x_m", self.cell_x_m, CELL_M)?;
         require("cell_z_m", self.cell_z_m, CELL_M)?;
@@ -92,7 +96,7 @@ impl SplineGroundSettings {
             patch.validate().map_err(|error| error.inside(&format!("patches[{index}]")))?;
         }
         let [columns, rows] = self.bounds().map(|bounds| (bounds.end - bounds.start) as u64);
-        require("patches: points of the rectangle around all", columns * rows, 0..=MOST_POINTS)
+        Ok(require("patches: points of the rectangle around all", columns * rows, 0..=MOST_POINTS)?)
     }
 
     /// The columns and rows of the rectangle around all patches.
@@ -119,7 +123,7 @@ impl SplinePatch {
             return Err(TerrainError::Count { field, found, columns: self.columns, rows: self.rows, expected });
         }
         let height = |(index, &height_m)| require(&format!("heights_m[{index}]"), height_m, HEIGHT_M);
-        self.heights_m.iter().enumerate().try_for_each(height)
+        Ok(self.heights_m.iter().enumerate().try_for_each(height)?)
     }
 }
 

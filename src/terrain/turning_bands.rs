@@ -11,12 +11,12 @@
 //! in coordinates that are stretched across its axis.
 
 use super::{
-    Heightfield, TerrainError, TurningBandsSettings,
-    heightfield::finite,
+    heightfield::{Heightfield, finite},
     line_process::{Harmonic, LineProcess},
-    settings::{PERIOD_SCALES, SAMPLES_PER_WAVELENGTH},
-    strata::{Stratum, strata},
+    settings::{PERIOD_SCALES, SAMPLES_PER_WAVELENGTH, TurningBandsSettings},
+    spectral_sampling::{SpectralInterval, spectral_intervals},
 };
+use crate::setting::SettingError;
 use bevy::math::DVec2;
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rustfft::FftPlanner;
@@ -41,11 +41,11 @@ impl TurningBands {
     /// Takes some 10 ms for the default settings.
     ///
     /// # Errors
-    /// [`TerrainError::OutOfRange`] for the first setting outside its domain.
-    pub fn new(settings: &TurningBandsSettings) -> Result<Self, TerrainError> {
+    /// [`SettingError`] for the first setting outside its domain.
+    pub fn new(settings: &TurningBandsSettings) -> Result<Self, SettingError> {
         settings.validate()?;
         let lattice = Lattice::new(settings);
-        let strata = strata(&settings.model, lattice.highest_wavenumber, settings.harmonics as usize);
+        let intervals = spectral_intervals(&settings.model, lattice.highest_wavenumber, settings.harmonics as usize);
         let stretch = settings.anisotropy.stretch();
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(settings.seed);
         let mut planner = FftPlanner::new();
@@ -53,7 +53,7 @@ impl TurningBands {
         let turn = spacing * rng.random::<f64>();
         let line = |index: u32| {
             let direction = DVec2::from_angle(turn + spacing * f64::from(index));
-            let harmonics = draw_harmonics(settings, &strata, &lattice, &mut rng);
+            let harmonics = draw_harmonics(settings, &intervals, &lattice, &mut rng);
             Line {
                 // (A x) . u = x . (A^T u)
                 step: stretch.transpose() * direction / lattice.spacing_m,
@@ -61,7 +61,7 @@ impl TurningBands {
             }
         };
         let lines = (0..settings.lines).map(line).collect();
-        let resolved_fraction = strata.iter().map(|stratum| stratum.share).sum();
+        let resolved_fraction = intervals.iter().map(|interval| interval.share).sum();
         Ok(Self { settings: settings.clone(), lines, resolved_fraction })
     }
 
@@ -144,20 +144,20 @@ impl Lattice {
 
 fn draw_harmonics(
     settings: &TurningBandsSettings,
-    strata: &[Stratum],
+    intervals: &[SpectralInterval],
     lattice: &Lattice,
     rng: &mut Xoshiro256PlusPlus,
 ) -> Vec<Harmonic> {
     let line_deviation_m = settings.deviation_m / f64::from(settings.lines).sqrt();
-    let harmonic = |stratum: &Stratum| {
-        let wavenumber = stratum.wavenumber(&settings.model, rng.random());
+    let harmonic = |interval: &SpectralInterval| {
+        let wavenumber = interval.wavenumber(&settings.model, rng.random());
         Harmonic {
             waves: (wavenumber / lattice.wavenumber_step).round() as u32,
-            amplitude_m: line_deviation_m * (2.0 * stratum.share).sqrt(),
+            amplitude_m: line_deviation_m * (2.0 * interval.share).sqrt(),
             phase: TAU * rng.random::<f64>(),
         }
     };
-    strata.iter().map(harmonic).collect()
+    intervals.iter().map(harmonic).collect()
 }
 
 #[cfg(test)]

@@ -8,7 +8,13 @@
 //! does not show. All pairs of samples up to the longest lag are counted: the sum of products comes from one FFT (see
 //! `autocorrelation`), the sums of squares from a table of running sums.
 
-use super::{Drift, ElevationGrid, FoundDrift, TerrainError, autocorrelation::Autocorrelation, drift, error::require};
+use super::{
+    autocorrelation::Autocorrelation,
+    drift::{Drift, FoundDrift, remove_drift},
+    elevation_grid::ElevationGrid,
+    error::TerrainError,
+};
+use crate::setting::require;
 use bevy::{math::DVec2, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 use std::{f64::consts::PI, ops::RangeInclusive};
@@ -72,13 +78,13 @@ impl Variogram {
     /// Takes some 0.1 s for 1024 x 1024 samples; 2 s and 0.5 GB for 4096 x 4096.
     ///
     /// # Errors
-    /// [`TerrainError::OutOfRange`] for a setting outside its domain or a map of more than 2^24 samples,
+    /// [`TerrainError::Setting`] for a setting outside its domain or a map of more than 2^24 samples,
     /// [`TerrainError::Level`] where nothing is left when the drift is taken away.
     pub fn estimate(grid: &ElevationGrid, settings: &VariogramSettings) -> Result<Self, TerrainError> {
         require("longest_lag", settings.longest_lag, LONGEST_LAG)?;
         require("sectors", settings.sectors, SECTORS)?;
         require("columns x rows", grid.heights_m().len() as u64, 0..=MOST_SAMPLES)?;
-        let (drift, values) = drift::remove(grid, settings.drift);
+        let (drift, values) = remove_drift(grid, settings.drift);
         let variance_m2 = values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64;
         // What single precision leaves of a plane.
         let rounding_m = 1e-6 * grid.heights_m().iter().fold(0.0f32, |most, height| most.max(height.abs()));

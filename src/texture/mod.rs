@@ -1,10 +1,13 @@
-//! Pictures made on the processor: the canvas on which bark, leaves and ground are painted, with mips, and textures as
-//! functions of place, before they are pixels. Pure, and knowing no other room.
+//! Textures made on the CPU: images with mips, and textures as functions of place. Pure, and independent of all other
+//! rooms.
 
 mod blur;
-pub mod canvas;
+mod encoding;
 pub mod fourier;
+mod linear_image;
+mod texture_data;
 
 pub(crate) use blur::blurred;
-pub(crate) use canvas::{Canvas, HALF_A_STEP, byte, colour_bytes, linear, linear_bytes, mix};
-pub use canvas::{MASK_CUT_OFF, Texels, TextureData};
+pub(crate) use encoding::{HALF_A_STEP, byte, colour_bytes, linear, linear_bytes, mix};
+pub(crate) use linear_image::LinearImage;
+pub use texture_data::{MASK_CUT_OFF, Texels, TextureData};

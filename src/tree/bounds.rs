@@ -7,7 +7,7 @@
 //! more than the integral). In a great storm that sum is far more than the saturating beams can reach, and the box is that
 //! of the limit, which is found by bending the tree.
 
-use super::{leaf_mesh::LeafVertices, mesh::WoodVertices};
+use super::vertices::{LeafVertices, WoodVertices};
 use crate::dynamics::pose::{BeamDynamics, BeamPose, SLOPE_TIP, TIP_ANGLE_LIMIT, TreePoser, mode_shape};
 use bevy::math::Vec3;
 
@@ -21,8 +21,8 @@ pub struct SwayBounds {
 }
 
 impl SwayBounds {
-    /// Before anything is included but the tree's foot.
-    const FOOT: Self = Self { min: Vec3::ZERO, max: Vec3::ZERO };
+    /// The box of the tree's origin alone.
+    const ORIGIN: Self = Self { min: Vec3::ZERO, max: Vec3::ZERO };
 
     /// Grows to hold all within `reach_m` of a place.
     fn include(&mut self, place: Vec3, reach_m: f32) {
@@ -92,7 +92,7 @@ impl Carried {
 
 /// The box around all that is bound to the beams while no load on them is above that pressure, m²/s².
 fn bounds_under(beams: &[BeamDynamics], reaches_m: &[f32], pressure: f32) -> SwayBounds {
-    let mut bounds = SwayBounds::FOOT;
+    let mut bounds = SwayBounds::ORIGIN;
     let mut carried: Vec<Carried> = Vec::with_capacity(beams.len());
     for (beam, reach_m) in beams.iter().zip(reaches_m) {
         let free_rad = SLOPE_TIP * beam.gain * pressure;
@@ -124,7 +124,7 @@ const HURRICANE_RAD: f32 = 1e3;
 
 /// Bends every beam to its limit into each of a ring of directions, and takes the box around all that is bound to it.
 pub(super) fn limit_bounds(beams: &[BeamDynamics], reaches_m: &[f32]) -> SwayBounds {
-    let mut bounds = SwayBounds::FOOT;
+    let mut bounds = SwayBounds::ORIGIN;
     let mut poses = vec![BeamPose::REST; beams.len()];
     for step in 0..=BOUND_DIRECTIONS {
         let azimuth = step as f32 / BOUND_DIRECTIONS as f32 * std::f32::consts::TAU;

@@ -1,21 +1,22 @@
-//! Trees as entities.
+//! The components of trees.
 
 use super::{model::TreeModel, species::Species};
 use bevy::prelude::*;
 
-/// A tree of a species, standing at its `Transform` (uniform scale).
+/// A tree of a species, at the place of its `Transform` (uniform scale).
 ///
 /// Once the species is loaded and baked the entity gets a [`Grown`] model, and, where there is rendering, one draw for
 /// its wood and one for its leaves; all trees of one model are drawn together.
-/// Change it as you like: another species, age or seed is noticed within eight frames, and the tree is another once that
-/// model is baked.
+/// It may be changed at any time. Another species, age or seed is noticed within eight frames, and the tree changes once
+/// that model is baked.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component)]
 #[require(Transform, Visibility)]
 pub struct Tree {
-    /// What grows here.
+    /// Its species.
     pub species: Handle<Species>,
-    /// Chooses among the species' variants and tints. `None` takes it from the place, so that equal forests look equal.
+    /// Chooses among the species' variants and tints. `None` takes it from the place in the world where the tree gets
+    /// its model, so that equal forests look equal.
     pub seed: Option<u64>,
     /// Age, years; `None` is the species' mature age. Clamped to what the species allows; not every year has a model of
     /// its own, so a tree that ages as time goes by grows in steps.
@@ -72,10 +73,10 @@ impl Tree {
         days.clamp(-182.5, 182.5) / 365.0
     }
 
-    /// The seed in force at `place`: a well-mixed number, the same on every run.
-    pub fn seed_at(&self, place: Vec3) -> u64 {
+    /// Its own seed or that of its `place` in the world: a well-mixed number, the same on every run.
+    pub(super) fn mixed_seed(&self, place: impl FnOnce() -> Vec3) -> u64 {
         let raw = self.seed.unwrap_or_else(|| {
-            let [x, y, z] = place.to_array().map(|coordinate| u64::from(coordinate.to_bits()));
+            let [x, y, z] = place().to_array().map(|coordinate| u64::from(coordinate.to_bits()));
             x ^ y.rotate_left(21) ^ z.rotate_left(42)
         });
         mixed(raw)
@@ -96,7 +97,7 @@ fn mixed(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
-/// The model of a tree whose species has been baked. Written by [`WindwoodSystems::Grow`](crate::WindwoodSystems::Grow).
+/// The model of a tree whose species has been baked. Written by [`WindwoodSystems::Bake`](crate::WindwoodSystems::Bake).
 #[derive(Component, Clone, Debug, PartialEq)]
 #[component(immutable)]
 pub struct Grown {
@@ -108,7 +109,7 @@ pub struct Grown {
     pub seed: u64,
 }
 
-/// Asks for a tree's beams and leaves as entities whose `Transform`s follow the wind, for things that hang on branches,
+/// Asks for a tree's beams and leaves as entities whose `Transform`s follow the wind, for things attached to branches,
 /// for servers, for tests. It costs work every frame: give it to the trees that need it.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Component, Default)]
@@ -126,14 +127,14 @@ impl Default for Articulated {
 }
 
 /// One beam of an [`Articulated`] tree. Its `Transform`, in world space, rides on the cross-section at `at`, with +Y along
-/// the beam: hang a lantern there as a child. It is no child of the tree, whose draw would be extracted anew each frame.
+/// the beam: attach a lantern there as a child. It is no child of the tree, whose draw would be extracted anew each frame.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component)]
 #[require(Transform, Visibility)]
 pub struct Beam {
     /// Index into the skeleton's beams.
     pub index: u32,
-    /// Place on the beam: 0 its root, 1 its tip. Yours to change.
+    /// Place on the beam: 0 its root, 1 its tip. A game may change it.
     pub at: f32,
 }
 
@@ -171,7 +172,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shades_and_seasons_out_of_range_are_harmless() {
+    fn tints_and_seasons_out_of_range_are_clamped() {
         let tree = Tree::new(Handle::default());
         assert_eq!(tree.tint_byte(0xab << 56), 0xab);
         let tint = |tint| tree.clone().with_tint(tint).tint_byte(7);

@@ -9,12 +9,14 @@ use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    growth::{envelope::Envelope, reeves::leave},
+    growth::{envelope::Envelope, grower::leave},
     leaf::{Leaf, LeafArrangement},
     skeleton::{LeafCluster, SkeletonBeam, continuations},
-    species::{SpeciesError, require},
 };
-use crate::dynamics::leaf::LeafResponse;
+use crate::{
+    dynamics::leaf::LeafResponse,
+    setting::{SettingError, require},
+};
 
 /// Most sprays on one tree.
 pub const CLUSTERS_LIMIT: usize = 16_384;
@@ -45,7 +47,7 @@ impl Card {
     }
 }
 
-/// What a tree wears.
+/// The foliage of a species: its sprays, where they sit and how they lie.
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Foliage {
@@ -92,7 +94,7 @@ pub struct Foliage {
     /// Drag coefficient of a spray, by its size squared, 0 to 2; far below that of a plate, because sprays fold away and
     /// shelter one another.
     pub drag_coefficient: f32,
-    /// How they answer the wind.
+    /// How they respond to the wind.
     pub response: LeafResponse,
 }
 
@@ -127,7 +129,7 @@ impl Default for Foliage {
 }
 
 impl Foliage {
-    pub(super) fn validate(&self) -> Result<(), SpeciesError> {
+    pub(super) fn validate(&self) -> Result<(), SettingError> {
         require("first_order", f32::from(self.first_order), 0.0..=5.0)?;
         require("first_at", self.first_at, 0.0..=1.0)?;
         require("spacing_m", self.spacing_m, 0.03..=10.0)?;
@@ -146,11 +148,7 @@ impl Foliage {
         require("translucency", self.translucency, 0.0..=1.0)?;
         require("mass_per_area_kg_m2", self.mass_per_area_kg_m2, 0.0..=10.0)?;
         require("drag_coefficient", self.drag_coefficient, 0.0..=2.0)?;
-        let response = self
-            .response
-            .validate()
-            .map_err(|error| SpeciesError::out_of_range(error.field, error.value, error.allowed).inside("response"));
-        response?;
+        self.response.validate().map_err(|error| error.inside("response"))?;
         self.leaf.validate().map_err(|error| error.inside("leaf"))
     }
 
@@ -161,8 +159,8 @@ impl Foliage {
     }
 }
 
-/// Hangs sprays on all beams that carry leaves.
-pub(super) fn place(
+/// Places sprays on all beams that carry leaves.
+pub(super) fn place_foliage(
     foliage: &Foliage,
     beams: &[SkeletonBeam],
     envelope: &Envelope,
@@ -182,7 +180,7 @@ pub(super) fn place(
             (false, false) => foliage.first_at,
         };
         let twig = Twig { foliage, beam, index: index as u32, envelope, tone: tones[index] };
-        twig.hang(first_at, continuations[index].is_none(), &mut clusters, random);
+        twig.place_sprays(first_at, continuations[index].is_none(), &mut clusters, random);
         if clusters.len() >= CLUSTERS_LIMIT {
             clusters.truncate(CLUSTERS_LIMIT);
             break;
@@ -200,7 +198,7 @@ struct Twig<'a> {
 }
 
 impl Twig<'_> {
-    fn hang(&self, first_at: f32, ends: bool, clusters: &mut Vec<LeafCluster>, random: &mut impl Rng) {
+    fn place_sprays(&self, first_at: f32, ends: bool, clusters: &mut Vec<LeafCluster>, random: &mut impl Rng) {
         let spacing = self.foliage.spacing_m / self.beam.length_m;
         let mut roll = if random.random::<bool>() { 0.0 } else { self.foliage.roll_deg.to_radians() };
         let mut at = first_at + 0.5 * spacing * random.random::<f32>();

@@ -12,29 +12,11 @@ use bevy::math::Vec3;
 use super::{
     crown::{gardner, impressionist},
     foliage::{Card, Foliage},
-    growth::Growth,
+    generator::Growth,
     skeleton::{LeafCluster, Skeleton},
     species::Species,
+    vertices::LeafVertices,
 };
-
-/// Vertices of the leaf cards.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct LeafVertices {
-    /// Rest positions, local to the tree, m.
-    pub positions: Vec<[f32; 3]>,
-    /// Unit normals, bent towards the crown's outside.
-    pub normals: Vec<[f32; 3]>,
-    /// Texture coordinates: the spray runs from (0, 1) to (1, 0).
-    pub uvs: Vec<[f32; 2]>,
-    /// Beam index (whole), place on that beam 0..1, flutter phase 0..1, ambient light 0..1.
-    pub sway: Vec<[f32; 4]>,
-    /// Main axis of the spray at rest (unit), and its tint 0..1.
-    pub axis: Vec<[f32; 4]>,
-    /// Where the spray holds on, m; the fourth is 0.
-    pub anchor: Vec<[f32; 4]>,
-    /// Triangles.
-    pub indices: Vec<u32>,
-}
 
 /// Where the kite is widest, as a share of its length.
 const WIDEST_AT: f32 = 0.5;
@@ -45,7 +27,7 @@ const CLUMP_ORDER: u8 = 2;
 /// Ambient light on the lower, inner side of a clump.
 const CLUMP_SHADE: f32 = 0.38;
 
-/// The surface of the foliage: cards for sprays, or what a painted crown is made of.
+/// The surface of the foliage: cards for sprays, or the polygons or ellipsoids of a crown.
 #[must_use]
 pub fn leaves(species: &Species, skeleton: &Skeleton) -> LeafVertices {
     match &species.growth {
@@ -55,7 +37,7 @@ pub fn leaves(species: &Species, skeleton: &Skeleton) -> LeafVertices {
     }
 }
 
-/// Cuts the cards of all sprays.
+/// Builds the cards of all sprays.
 fn cards(species: &Species, skeleton: &Skeleton) -> LeafVertices {
     let foliage = &species.foliage;
     let mut out = LeafVertices::with_capacity(skeleton.clusters.len() * foliage.card.vertices());
@@ -78,43 +60,20 @@ fn cards(species: &Species, skeleton: &Skeleton) -> LeafVertices {
             let normal = (corner.normal * facing + bent).try_normalize().unwrap_or(outward);
             out.push(cluster, corner.position, normal, corner.uv, light);
         }
-        out.close(foliage.card);
+        push_triangles(&mut out, foliage.card);
     }
     out
 }
 
-impl LeafVertices {
-    fn with_capacity(vertices: usize) -> Self {
-        Self {
-            positions: Vec::with_capacity(vertices),
-            normals: Vec::with_capacity(vertices),
-            uvs: Vec::with_capacity(vertices),
-            sway: Vec::with_capacity(vertices),
-            axis: Vec::with_capacity(vertices),
-            anchor: Vec::with_capacity(vertices),
-            indices: Vec::with_capacity(3 * vertices),
-        }
-    }
-
-    fn push(&mut self, cluster: &LeafCluster, position: Vec3, normal: Vec3, uv: [f32; 2], light: f32) {
-        self.positions.push(position.to_array());
-        self.normals.push(normal.to_array());
-        self.uvs.push(uv);
-        self.sway.push([cluster.beam as f32, cluster.at, cluster.phase, light]);
-        self.axis.push(cluster.axis.extend(cluster.tint).to_array());
-        self.anchor.push(cluster.anchor.extend(0.0).to_array());
-    }
-
-    /// The triangles of the card whose vertices were pushed last.
-    fn close(&mut self, card: Card) {
-        let root = (self.positions.len() - card.vertices()) as u32;
-        let triangles: &[u32] = match card {
-            Card::Flat | Card::Folded => &[0, 2, 1, 0, 3, 2],
-            Card::Bent => &[0, 4, 1, 4, 2, 1, 0, 3, 4, 4, 3, 2],
-            Card::Crossed => &[0, 2, 1, 0, 3, 2, 4, 6, 5, 4, 7, 6],
-        };
-        self.indices.extend(triangles.iter().map(|corner| root + corner));
-    }
+/// The triangles of the card whose vertices were pushed last.
+fn push_triangles(out: &mut LeafVertices, card: Card) {
+    let root = (out.positions.len() - card.vertices()) as u32;
+    let triangles: &[u32] = match card {
+        Card::Flat | Card::Folded => &[0, 2, 1, 0, 3, 2],
+        Card::Bent => &[0, 4, 1, 4, 2, 1, 0, 3, 4, 4, 3, 2],
+        Card::Crossed => &[0, 2, 1, 0, 3, 2, 4, 6, 5, 4, 7, 6],
+    };
+    out.indices.extend(triangles.iter().map(|corner| root + corner));
 }
 
 /// A vertex of a card, before the crown bends its normal.

@@ -1,48 +1,74 @@
-//! What a tree is made of: its species, its skeleton of beams, its wood, leaves and their textures.
+//! Trees: from a species file to the model that thousands of trees share, and the [`Tree`] entities that use it.
 //!
-//! A [`Species`] is a page of numbers; [`skeleton::grow`] makes one individual of it from an age and a seed;
-//! [`mesh::wood`] and [`leaf_mesh::leaves`] give it a surface, [`bark`] and [`leaf`] paint it, and
-//! [`mechanics`] finds out how stiff, heavy and exposed its beams are. All that together is a [`TreeModel`], baked once
-//! for each variant of a species and shared by all its [`Tree`]s.
+//! # From species file to mesh
+//! A model is baked once for each variant of a species at each step of age, in the background. The stages, in order:
+//!
+//! | stage | input -> output | file |
+//! |---|---|---|
+//! | load | `*.species.ron` -> [`Species`], checked field by field | `loader.rs`, [`species`] |
+//! | pick an age | age in years -> [`Stage`](growth::age::Stage), the shares of the mature sizes | [`growth::age`] |
+//! | grow branches | [`Growth`] settings, stage, seed -> beams, parents first | `generator.rs` chooses one of [`growth::reeves_blau`], [`growth::zaharia`], [`growth::aono_kunii`]; they share `growth/grower.rs` and `growth/stems.rs`, [`growth::trunk`], [`growth::envelope`] and [`growth::phyllotaxis`] |
+//! | or grow a crown | crown settings -> a whole skeleton with polygons or ellipsoids for leaves | [`crown::impressionist`], [`crown::gardner`] |
+//! | place foliage | beams -> sprays of leaves on them | [`foliage`] |
+//! | find radii | beams, sprays -> radii, by the pipe model | `growth/pipes.rs` |
+//! | break | skeleton -> skeleton with stubs, or without leaves | [`growth::damage`] |
+//! | **skeleton** | all of the above, called from one place | [`individual::grow`] -> [`skeleton`] |
+//! | mechanics | skeleton -> gain and frequency of each beam, for the response tables | [`mechanics`] |
+//! | wood mesh | skeleton -> one tube a branch, flared where it leaves its parent | `wood_mesh.rs`, `tube.rs`, `joint/` |
+//! | leaf mesh | skeleton -> one card a spray, or the crown's polygons or ellipsoids | `leaf_mesh.rs` |
+//! | bounds | vertices, beams -> the box that holds the tree in every wind | `bounds.rs` |
+//! | **model** | all of the above, called from one place | [`TreeModel::bake`], in `model.rs` |
+//!
+//! Beside the model a species has textures, which do not depend on the individual: [`textures`] renders them from
+//! [`bark`], [`leaf`] and [`crown`]. [`phenology`] says what leaves look like at a time of the year.
+//!
+//! # From model to tree
+//! `ecs/species_models.rs` bakes in the background and stores the models in [`SpeciesModels`]. `ecs/grow_trees.rs` gives
+//! each [`Tree`] its variant as a [`Grown`] component. What draws and moves trees starts from there.
+//! `ecs/missing_species.rs` tells which trees wait for a species that cannot be loaded. [`Season`] is the time of the year.
 
 pub mod bark;
 mod bounds;
 mod components;
 pub mod crown;
+mod ecs;
 pub mod foliage;
-mod grove;
-mod grow;
+mod generator;
 pub mod growth;
+pub mod individual;
 mod joint;
 pub mod leaf;
-pub mod leaf_mesh;
+mod leaf_mesh;
 mod loader;
 pub mod mechanics;
-pub mod mesh;
 mod model;
-pub mod painting;
 pub mod phenology;
 mod plugin;
-mod season;
 pub mod skeleton;
 pub mod species;
+pub mod textures;
 mod tube;
+pub mod vertices;
+mod wood_mesh;
 
 #[cfg(feature = "render")]
 pub(crate) use bounds::PressureStep;
 pub use bounds::SwayBounds;
 pub use components::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Tree, TreeBeams, TreeLeaves};
-pub use grove::{BakedSpecies, BakedStage, Grove, SpeciesBaked, bake_variants};
+pub use ecs::{
+    season::Season,
+    species_models::{BakedSpecies, BakedStage, SpeciesBaked, SpeciesModels, bake_variants},
+};
+pub use generator::Growth;
 pub use loader::SpeciesLoadError;
 pub use model::TreeModel;
 pub use plugin::TreePlugin;
-pub use season::Season;
 pub use species::{Species, SpeciesError};
 
 #[cfg(all(test, feature = "render"))]
 pub(crate) use bounds::MOST_ENLARGED;
 #[cfg(feature = "render")]
-pub(crate) use grove::receive_models;
+pub(crate) use ecs::species_models::store_baked_models;
 
 #[cfg(test)]
 mod tests;

@@ -1,12 +1,14 @@
-//! A tree, baked: everything that thousands of trees share, and nothing that changes.
+//! The baked model of a tree: everything that the trees of one variant and age share. It never changes.
 
 use super::{
     bounds::{PressureStep, SwayBounds, bounds_by_step, limit_bounds, reaches_m},
-    leaf_mesh::{LeafVertices, leaves},
+    individual::grow,
+    leaf_mesh::leaves,
     mechanics::beam_dynamics,
-    mesh::{WoodVertices, wood},
-    skeleton::{Skeleton, grow},
+    skeleton::Skeleton,
     species::Species,
+    vertices::{LeafVertices, WoodVertices},
+    wood_mesh::wood,
 };
 use crate::dynamics::pose::BeamDynamics;
 use bevy::{asset::Asset, reflect::TypePath};
@@ -15,8 +17,8 @@ use std::sync::Arc;
 /// One variant of a species: skeleton, beams, vertices, bounds. Immutable once baked.
 #[derive(Asset, TypePath, Clone, Debug)]
 pub struct TreeModel {
-    /// The beams and leaf clusters at rest. Shared, as are wood and leaves: whoever cuts a model in the background takes a
-    /// copy of it.
+    /// The beams and leaf clusters at rest. Shared, as are wood and leaves: tasks in the background keep
+    /// a pointer of their own.
     pub skeleton: Arc<Skeleton>,
     /// The beams as they are posed, in the order of the skeleton's.
     pub beams: Vec<BeamDynamics>,

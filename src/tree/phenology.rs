@@ -12,8 +12,8 @@
 //! An evergreen keeps its size and its colour; its new shoots are young for a while. The twin for drawing is
 //! `render/shaders/season.wesl`.
 
-use super::species::{SpeciesError, require, require_colour};
-use bevy::reflect::Reflect;
+use crate::setting::{SettingError, require, require_colour};
+use bevy::{math::FloatExt, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 
 /// The year of a species. Times are shares of the year from midwinter on.
@@ -94,7 +94,7 @@ impl Phenology {
         !self.evergreen && year >= self.fall - 0.5 * self.fall_length - EARLIEST
     }
 
-    pub(super) fn validate(&self) -> Result<(), SpeciesError> {
+    pub(super) fn validate(&self) -> Result<(), SettingError> {
         require("flush", self.flush, 0.05..=0.6)?;
         require("flush_length", self.flush_length, 0.01..=0.3)?;
         require("turn", self.turn, self.flush..=0.95)?;
@@ -111,28 +111,23 @@ impl Phenology {
     #[must_use]
     pub fn leaves(&self, year: f32, lag: f32, rank: f32) -> LeafState {
         let own = year + self.patchiness * lag;
-        let youth = 1.0 - smoothstep(self.flush, self.flush + YOUTH, own);
+        let youth = 1.0 - own.smoothstep(self.flush, self.flush + YOUTH);
         if self.evergreen {
-            let unfolding = smoothstep(self.flush - 0.5 * self.flush_length, self.flush, own);
+            let unfolding = own.smoothstep(self.flush - 0.5 * self.flush_length, self.flush);
             return LeafState { size: 1.0, youth: youth * unfolding, autumn: 0.0, drifting: false };
         }
         let half = 0.5 * self.flush_length;
-        let unfolded = smoothstep(self.flush - half, self.flush + half, own);
+        let unfolded = own.smoothstep(self.flush - half, self.flush + half);
         // The last leaf is down by the year's end, so that no leaf jumps on to the new year's bare twig.
         let falls = (self.fall + self.fall_length * (rank - 0.5)).min(1.0 - DROP);
         let half = 0.5 * self.turn_length;
         LeafState {
-            size: unfolded * (1.0 - smoothstep(falls, falls + DROP, year)),
+            size: unfolded * (1.0 - year.smoothstep(falls, falls + DROP)),
             youth,
-            autumn: smoothstep(self.turn - half, self.turn + half, own),
+            autumn: own.smoothstep(self.turn - half, self.turn + half),
             drifting: (falls + DROP..falls + DROP + DRIFT).contains(&year),
         }
     }
-}
-
-fn smoothstep(from: f32, to: f32, at: f32) -> f32 {
-    let share = ((at - from) / (to - from)).clamp(0.0, 1.0);
-    share * share * (3.0 - 2.0 * share)
 }
 
 #[cfg(test)]
@@ -145,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_deciduous_tree_is_bare_green_turned_and_bare_again() {
+    fn a_deciduous_tree_flushes_turns_and_sheds() {
         let oak = Phenology::default();
         assert_eq!(mean_size(&oak, 0.0), 0.0);
         assert_eq!(mean_size(&oak, 0.99999), 0.0);
@@ -184,7 +179,7 @@ mod tests {
 
     /// The year is a circle: what the last moment shows the first one shows as well.
     #[test]
-    fn nothing_jumps_within_the_year_nor_at_its_end() {
+    fn leaves_change_continuously_over_the_year_and_across_its_end() {
         for evergreen in [false, true] {
             let species = Phenology { evergreen, fall: 0.97, fall_length: 0.4, ..Phenology::default() };
             let mut before = species.leaves(1.0, 0.4, 0.9);

@@ -2,21 +2,30 @@
 
 use super::{
     components::{Articulated, Beam, Leaf, Tree},
-    grove::{Grove, SpeciesBaked, adopt_species, receive_models},
-    grow::{grow_trees, is_time_to_look, regrow_trees},
+    ecs::{
+        grow_trees::{grow_trees, is_time_to_search, regrow_trees},
+        missing_species::{MissingSpecies, report_missing_species},
+        season::Season,
+        species_models::{SpeciesBaked, SpeciesModels, store_baked_models, update_species},
+    },
     loader::SpeciesLoader,
     model::TreeModel,
-    season::Season,
     species::Species,
 };
-use crate::{schedule::WindwoodSystems, timing::timed};
+use crate::{
+    plugin_checks::require_assets,
+    schedule::{WindwoodSystems, configure_sets},
+    timing::timed,
+};
 use bevy::prelude::*;
 
-/// Trees without drawing and without motion: loads and bakes species, gives [`Tree`] entities their models.
+/// Loads and bakes species and gives [`Tree`] entities their models. Trees do not move and are not rendered by it.
 pub struct TreePlugin;
 
 impl Plugin for TreePlugin {
     fn build(&self, app: &mut App) {
+        require_assets::<Self>(app);
+        configure_sets(app);
         app.init_asset::<Species>()
             .init_asset::<TreeModel>()
             .init_asset_loader::<SpeciesLoader>()
@@ -27,10 +36,11 @@ impl Plugin for TreePlugin {
             .register_type::<Leaf>()
             .register_type::<Season>()
             .init_resource::<Season>()
-            .init_resource::<Grove>()
-            .add_message::<SpeciesBaked>();
-        let grow = timed!(app, adopt_species, receive_models, grow_trees);
-        let regrow = timed!(app, regrow_trees).run_if(is_time_to_look);
-        app.add_systems(Update, (grow.chain(), regrow).chain().in_set(WindwoodSystems::Grow));
+            .init_resource::<SpeciesModels>()
+            .add_message::<SpeciesBaked>()
+            .add_message::<MissingSpecies>();
+        let grow = timed!(app, update_species, store_baked_models, grow_trees, report_missing_species);
+        let regrow = timed!(app, regrow_trees).run_if(is_time_to_search);
+        app.add_systems(Update, (grow.chain(), regrow).chain().in_set(WindwoodSystems::Bake));
     }
 }

@@ -5,13 +5,8 @@
 //! local to the tree, in metres, y up, the root at the origin.
 
 use bevy::math::Vec3;
-use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
 
-use super::{
-    foliage::{self, Foliage},
-    growth::{Individual, age::Stage, envelope::Envelope, grower::Wood, pipes, reeves::Trunk},
-    species::Species,
-};
+use super::growth::{envelope::Envelope, trunk::Trunk};
 
 /// A straight or gently bowed piece of wood.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +59,7 @@ pub struct LeafCluster {
     pub beam: u32,
     /// Where on that beam, 0 to 1.
     pub at: f32,
-    /// Where it holds on, m.
+    /// Where it is attached, m.
     pub anchor: Vec3,
     /// Unit main axis, from the anchor to the tip.
     pub axis: Vec3,
@@ -116,47 +111,4 @@ pub(super) fn continuations(beams: &[SkeletonBeam]) -> Vec<Option<u32>> {
         }
     }
     next
-}
-
-/// Sprays of a young tree are shoots no longer than this share of its height.
-const LONGEST_SPRAY_SHARE: f32 = 0.3;
-
-/// Grows one individual of `species` as it is at `age_years`, which is clamped to 1 year and the oldest age of the
-/// species. The same species, age and seed give the same tree, on every run.
-#[must_use]
-pub fn grow(species: &Species, age_years: f32, seed: u64) -> Skeleton {
-    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let stage = species.age.stage(age_years);
-    let mut skeleton = match species.growth.grow(&stage, &mut random) {
-        Individual::Branches(wood) => leaf_out(species, &stage, wood, &mut random),
-        Individual::Painted(skeleton) => skeleton,
-    };
-    species.damage.befall(&mut skeleton.beams, &mut skeleton.clusters, &mut random);
-    skeleton
-}
-
-/// Hangs leaves on the branches, and lets both decide how thick the branches are.
-fn leaf_out(species: &Species, stage: &Stage, wood: Wood, random: &mut impl Rng) -> Skeleton {
-    let Wood { mut beams, envelope, trunk_radius_m } = wood;
-    let clusters = foliage::place(&young(&species.foliage, &beams), &beams, &envelope, random);
-    if let Some(exponent) = species.growth.pipe_exponent() {
-        pipes::assign_radii(&mut beams, &clusters, trunk_radius_m, exponent);
-    }
-    let trunk = species.growth.trunk();
-    let trunk = trunk.scaled(stage.height, trunk_radius_m / trunk.radius_m);
-    Skeleton { beams, clusters, envelope, trunk }
-}
-
-/// The foliage on a tree that may not have all its orders of branches yet: leaves sit on the last that there is. Sprays
-/// keep their size whatever the age, but are no larger than a seedling.
-fn young(foliage: &Foliage, beams: &[SkeletonBeam]) -> Foliage {
-    let last_order = beams.iter().map(|beam| beam.order).max().unwrap_or(0);
-    let height_m = beams.iter().map(|beam| beam.path(1.0).y).fold(0.0, f32::max);
-    let size_m = foliage.size_m.min(LONGEST_SPRAY_SHARE * height_m);
-    Foliage {
-        first_order: foliage.first_order.min(last_order),
-        size_m,
-        spacing_m: foliage.spacing_m * size_m / foliage.size_m,
-        ..foliage.clone()
-    }
 }

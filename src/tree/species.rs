@@ -1,22 +1,24 @@
-//! A species: the numbers from which all individuals of one kind of tree grow.
+//! A species: the settings from which all individuals of one kind of tree grow.
 //!
 //! A species is written in RON, every field with its unit in its name; what is left out takes the default, which is
 //! a pedunculate oak. Sizes are those of the mature tree: [`Age`] says when that is and how the tree gets there.
 //! [`Species::from_ron`] refuses what does not make a tree and says which field, which value and
-//! what is allowed, so that an editor never crashes on a slip of the keyboard.
-
-use std::{fmt::Display, ops::RangeInclusive};
+//! what is allowed, so that a typing error in a file is found at once.
 
 use bevy::{asset::Asset, reflect::Reflect};
-use ron::{Options, extensions::Extensions};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::{
     bark::Bark,
     foliage::Foliage,
-    growth::{Growth, age::Age, damage::Damage, reeves::ReevesBlau},
+    generator::Growth,
+    growth::{age::Age, damage::Damage, reeves_blau::ReevesBlau},
     phenology::Phenology,
+};
+use crate::{
+    ron_text::{SyntaxError, from_ron},
+    setting::{SettingError, require},
 };
 
 /// One kind of tree.
@@ -80,7 +82,7 @@ impl Default for Wood {
 }
 
 impl Wood {
-    fn validate(&self) -> Result<(), SpeciesError> {
+    fn validate(&self) -> Result<(), SettingError> {
         require("young_modulus_pa", self.young_modulus_pa, 1.0e8..=1.0e11)?;
         require("density_kg_m3", self.density_kg_m3, 100.0..=2000.0)?;
         self.bark.validate().map_err(|error| error.inside("bark"))
@@ -94,17 +96,10 @@ impl Species {
     /// Reads and checks a species.
     ///
     /// # Errors
-    /// [`SpeciesError::Syntax`] with line and column where `text` is no RON of a species, [`SpeciesError::OutOfRange`]
+    /// [`SpeciesError::Syntax`] with line and column where `text` is no RON of a species, [`SpeciesError::Setting`]
     /// where it is one but does not make a tree.
     pub fn from_ron(text: &str) -> Result<Self, SpeciesError> {
-        let extensions = Extensions::UNWRAP_VARIANT_NEWTYPES | Extensions::IMPLICIT_SOME;
-        let species: Self = Options::default().with_default_extension(extensions).from_str(text).map_err(|error| {
-            SpeciesError::Syntax {
-                line: error.span.start.line,
-                column: error.span.start.col,
-                message: error.code.to_string(),
-            }
-        })?;
+        let species: Self = from_ron(text)?;
         species.validate()?;
         Ok(species)
     }
@@ -112,10 +107,10 @@ impl Species {
     /// Checks every field.
     ///
     /// # Errors
-    /// [`SpeciesError::OutOfRange`] for the first field outside its domain.
-    pub fn validate(&self) -> Result<(), SpeciesError> {
+    /// [`SettingError`] for the first field outside its domain.
+    pub fn validate(&self) -> Result<(), SettingError> {
         if !(1..=Self::VARIANTS_LIMIT).contains(&self.variants) {
-            return Err(SpeciesError::out_of_range("variants", self.variants, "1 to 16"));
+            return Err(SettingError::new("variants", self.variants, "1 to 16"));
         }
         self.growth.validate().map_err(|error| error.inside("growth"))?;
         self.age.validate().map_err(|error| error.inside("age"))?;
@@ -130,55 +125,11 @@ impl Species {
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum SpeciesError {
     /// The text is not the RON of a species.
-    #[error("line {line}, column {column}: {message}")]
-    Syntax {
-        /// Line, from 1.
-        line: usize,
-        /// Column, from 1.
-        column: usize,
-        /// What is wrong there.
-        message: String,
-    },
-    /// A field is outside its domain.
-    #[error("`{field}` is {value}, but must be {allowed}")]
-    OutOfRange {
-        /// Path of the field, such as `growth.trunk.height_m`.
-        field: String,
-        /// Its value.
-        value: String,
-        /// What would be allowed.
-        allowed: String,
-    },
-}
-
-impl SpeciesError {
-    pub(super) fn out_of_range(field: &str, value: impl Display, allowed: impl Into<String>) -> Self {
-        Self::OutOfRange { field: field.into(), value: value.to_string(), allowed: allowed.into() }
-    }
-
-    /// The same error seen from the struct around it: `parent` comes before the field's path.
-    #[must_use]
-    pub(super) fn inside(self, parent: &str) -> Self {
-        match self {
-            Self::OutOfRange { field, value, allowed } => {
-                Self::OutOfRange { field: format!("{parent}.{field}"), value, allowed }
-            }
-            syntax @ Self::Syntax { .. } => syntax,
-        }
-    }
-}
-
-/// Refuses a value outside `allowed`, NaN among them.
-pub(super) fn require(field: &str, value: f32, allowed: RangeInclusive<f32>) -> Result<(), SpeciesError> {
-    if allowed.contains(&value) {
-        return Ok(());
-    }
-    Err(SpeciesError::out_of_range(field, value, format!("{} to {}", allowed.start(), allowed.end())))
-}
-
-/// Refuses a colour with a channel outside 0 to 1.
-pub(super) fn require_colour(field: &str, colour: [f32; 3]) -> Result<(), SpeciesError> {
-    colour.into_iter().try_for_each(|channel| require(field, channel, 0.0..=1.0))
+    #[error(transparent)]
+    Syntax(#[from] SyntaxError),
+    /// A field, named by its path such as `growth.trunk.height_m`, is outside its domain.
+    #[error(transparent)]
+    Setting(#[from] SettingError),
 }
 
 #[cfg(test)]
@@ -203,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_species_survives_writing_and_reading() {
+    fn a_species_reads_back_what_it_writes() {
         let fir = Species::from_ron(FIR).unwrap();
         let written = ron::to_string(&fir).unwrap();
         // Written without the extension, a variant's struct keeps its own parentheses.
@@ -235,8 +186,9 @@ mod tests {
     }
 
     #[test]
-    fn a_misspelt_field_is_found_by_line_and_name() {
-        let Err(SpeciesError::Syntax { line, message, .. }) = Species::from_ron("(\n  name: \"oak\",\n  wod: (),\n)")
+    fn a_misspelt_field_is_reported_with_line_and_name() {
+        let Err(SpeciesError::Syntax(SyntaxError { line, message, .. })) =
+            Species::from_ron("(\n  name: \"oak\",\n  wod: (),\n)")
         else {
             panic!("an unknown field must be a syntax error")
         };

@@ -5,7 +5,7 @@
 
 use bevy::math::{Quat, Vec3};
 
-use super::{joint::Fillet, mesh::WoodVertices};
+use super::{joint::Fillet, vertices::WoodVertices};
 
 /// A cross-section of a branch.
 #[derive(Clone, Copy, Debug)]

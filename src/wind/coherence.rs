@@ -1,4 +1,4 @@
-//! From the coherence of any two points to factors from which coherent amplitudes are drawn.
+//! The coherence of any two points, factorised: coherent amplitudes are drawn from the factors.
 //!
 //! The field is homogeneous across the wind but not in height: the coherence of two levels depends on the mean of
 //! their two mean speeds (equation 12, corrected). So an FFT applies across the wind only. At each frequency:
@@ -10,11 +10,13 @@
 //! ```
 //!
 //! and `sum_k |row z of L_k|^2 = gamma(z, z, 0) = 1`. Wrapping the kernel makes some `C_k` slightly indefinite at the
-//! slowest frequencies; these lose their negative part, and the rows are rescaled to that sum.
+//! slowest frequencies. Their negative part is dropped, and the rows are rescaled to that sum.
 
 use super::{
-    DecayCoefficients, FieldResolution, LogProfile,
     factorisation::{add_scaled, factorise, packed_columns, packed_len},
+    profile::LogProfile,
+    settings::FieldResolution,
+    spectrum::DecayCoefficients,
 };
 use std::f64::consts::TAU;
 
@@ -41,7 +43,7 @@ pub(super) fn decay_times_s(resolution: &FieldResolution, profile: &LogProfile, 
     times_s
 }
 
-/// The root coherence at one frequency after the other: exp(-f t) for each decay time t.
+/// The root coherence, frequency by frequency: exp(-f t) for each decay time t.
 pub(super) struct CoherenceKernel<'a> {
     values: Vec<f64>,
     /// exp(-df t): one product carries a value on to the next frequency.
@@ -208,12 +210,12 @@ mod tests {
     }
 
     #[test]
-    fn slowest_frequencies_lose_little_to_the_wrapping() {
+    fn clipping_changes_the_slowest_frequencies_little() {
         for bin in 1..8 {
             // Computed beforehand with the eigenvalues of NumPy: 0.0152 in the first bin, falling.
             assert!(worst_error(f64::from(bin) / 128.0) < 0.016);
         }
-        assert!(worst_error(1.0 / 128.0) > 0.01, "nothing was clipped: is the fallback still needed?");
+        assert!(worst_error(1.0 / 128.0) > 0.01, "nothing was clipped, so the fallback is not needed");
     }
 
     #[test]

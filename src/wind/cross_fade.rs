@@ -1,9 +1,10 @@
-//! Going over from one thing to the next without a jump.
+//! A cross-fade from one value to the next, with a smooth weight.
 //!
-//! A change of the wind is built in the background and takes over with a smooth weight. While one fade runs, the newest
-//! successor waits: fades never overlap, so two states are all there ever is.
+//! While one fade runs, the newest successor waits. Fades never overlap, so there are never more than two values at once.
 
-/// A value that changes by fading: `from` alone, or `from` and `to` with a weight between them.
+use bevy::math::FloatExt;
+
+/// A value that changes by a cross-fade: `from` alone, or `from` and `to` with a weight between them.
 #[derive(Clone, Debug)]
 pub struct CrossFade<T> {
     from: T,
@@ -13,16 +14,16 @@ pub struct CrossFade<T> {
     duration_s: f32,
 }
 
-/// What a step of the fade brought about.
+/// What a step of the fade did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FadeStep<T> {
     /// Nothing runs.
     Rest,
     /// A new successor has begun to fade in; its weight is still 0.
     Began,
-    /// A fade is on its way.
+    /// A fade runs.
     Running,
-    /// The successor has taken over and is now the only one; this was before it.
+    /// The successor is now the only value. This is the one that it replaced.
     Finished(T),
 }
 
@@ -32,13 +33,13 @@ impl<T> CrossFade<T> {
         Self { from: first, to: None, waiting: None, elapsed_s: 0.0, duration_s: 0.0 }
     }
 
-    /// Hands over a successor that takes `duration_s` seconds to fade in (0, less or NaN: one step). It begins with the
-    /// next step that finds no fade running; of several, the last counts, and the one that waited before it is given back.
+    /// Adds a successor that takes `duration_s` seconds to fade in (0, less or NaN: one step). Its fade begins with the
+    /// next step that finds no fade running. Of several waiting, the last counts: the one before it is returned.
     pub fn succeed(&mut self, next: T, duration_s: f32) -> Option<T> {
         self.waiting.replace((next, duration_s.max(0.0))).map(|(before, _)| before)
     }
 
-    /// Moves on by `delta_s` seconds.
+    /// Advances by `delta_s` seconds.
     pub fn advance(&mut self, delta_s: f32) -> FadeStep<T> {
         if self.to.is_some() {
             self.elapsed_s += delta_s.max(0.0);
@@ -70,7 +71,7 @@ impl<T> CrossFade<T> {
         self.to.as_ref()
     }
 
-    /// The value that will be there when all is done.
+    /// The value in force once all fades are done.
     pub fn newest(&self) -> &T {
         self.waiting.as_ref().map(|(next, _)| next).or(self.to.as_ref()).unwrap_or(&self.from)
     }
@@ -80,8 +81,7 @@ impl<T> CrossFade<T> {
         if self.to.is_none() {
             return 0.0;
         }
-        let x = if self.duration_s > 0.0 { (self.elapsed_s / self.duration_s).clamp(0.0, 1.0) } else { 0.0 };
-        x * x * (3.0 - 2.0 * x)
+        if self.duration_s > 0.0 { self.elapsed_s.smoothstep(0.0, self.duration_s) } else { 0.0 }
     }
 }
 
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn weight_goes_from_zero_to_one_and_the_successor_takes_over() {
+    fn weight_grows_from_zero_to_one_and_the_successor_replaces_the_value() {
         let mut fade = CrossFade::new('a');
         assert_eq!(fade.advance(0.1), FadeStep::Rest);
         fade.succeed('b', 1.0);
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_during_a_fade_waits_and_the_last_one_counts() {
+    fn the_last_successor_during_a_fade_follows_it() {
         let mut fade = CrossFade::new('a');
         fade.succeed('b', 1.0);
         fade.advance(0.0);
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn no_duration_takes_over_in_the_next_step() {
+    fn fade_without_duration_takes_one_step() {
         let mut fade = CrossFade::new(1);
         fade.succeed(2, 0.0);
         assert_eq!(fade.advance(0.0), FadeStep::Began);

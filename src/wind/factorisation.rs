@@ -1,10 +1,9 @@
-//! A factor L of a symmetric matrix C = L L^T that may be slightly indefinite.
+//! A factor L of a symmetric matrix C = L L^T, where C may be slightly indefinite.
 //!
 //! A symmetric matrix is stored as its lower triangle, packed column after column: column j begins with its diagonal
 //! element. Nearly all matrices of a field are positive definite and take the Cholesky factorisation as they are.
-//! Where a pivot comes out negative, simply dropping it would spoil the rest (coherence errors up to 0.3 in the slowest
-//! bins); so such a matrix is first replaced by the nearest positive semidefinite one, by setting its negative
-//! eigenvalues to zero (errors up to 0.015 there).
+//! A negative pivot cannot simply be dropped: coherence errors reach 0.3 in the slowest bins. Such a matrix is first replaced
+//! by the nearest positive semidefinite one, by setting its negative eigenvalues to zero (errors up to 0.015 there).
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::ops::Range;
@@ -63,7 +62,7 @@ fn split_column<'a>(matrix: &'a mut [f64], range: &Range<usize>) -> (&'a mut [f6
     matrix[range.start..].split_at_mut(range.len())
 }
 
-/// Turns a column into the factor's and takes its share out of the later columns.
+/// Turns a column into the factor's and subtracts its part from the later columns.
 fn eliminate(column: &mut [f64], mut later: &mut [f64]) {
     if column[0] <= LEAST_PIVOT {
         column.fill(0.0);
@@ -144,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn factor_of_an_indefinite_matrix_is_that_of_the_nearest_semidefinite_one() {
+    fn factor_of_an_indefinite_matrix_is_of_the_nearest_semidefinite_one() {
         // Correlations of 0.9, 0.9 and 0.1 contradict each other.
         let matrix = DMatrix::from_row_slice(3, 3, &[1.0, 0.9, 0.1, 0.9, 1.0, 0.9, 0.1, 0.9, 1.0]);
         let mut eigen = SymmetricEigen::new(matrix.clone());

@@ -1,8 +1,7 @@
-//! The wind everywhere and always: a mean profile, and a frozen realisation of turbulence that drifts with it.
+//! The wind field: a mean profile, and one realisation of turbulence that drifts with the mean wind.
 //!
-//! Taylor's hypothesis (Setas et al., equation 14): eddies are carried by the mean wind faster than they change, so the
-//! velocity at a distance x along the wind is what it was here x / U ago. The field is synthesised over time, and read
-//! at
+//! Taylor's hypothesis (Setas et al., equation 14): the mean wind carries eddies faster than they change. So the velocity
+//! at a distance x along the wind is what it was here x / U ago. The field is synthesised over time, and read at
 //!
 //! ```text
 //! tau = t - along / U_c
@@ -11,16 +10,19 @@
 //! The whole field drifts at one speed `U_c`, that of the reference height, so that it stays coherent in height.
 
 use super::{
-    FieldSettings, LogProfile, WindError, WindFrame,
+    frame::WindFrame,
     interpolation::Taps,
+    profile::LogProfile,
+    settings::FieldSettings,
     synthesis::{self, Turbulence},
 };
+use crate::setting::SettingError;
 use bevy::{
     math::{Vec3, Vec3A},
     tasks::ComputeTaskPool,
 };
 
-/// The turbulence of a calm still drifts with this speed, m/s, so that places differ by finite times.
+/// Turbulence drifts at least this fast, m/s, even in a calm: so places along the wind differ by finite times.
 const SLOWEST_DRIFT_M_S: f32 = 0.5;
 
 /// A wind field: velocity anywhere in the world at any time, periodic in time and across the wind.
@@ -34,18 +36,16 @@ pub struct WindField {
 }
 
 impl WindField {
-    /// Synthesises the field that `settings` describe, or tells what is wrong with them.
+    /// Synthesises the field that `settings` describe.
     ///
     /// Takes some 60 ms on two cores at the default resolution: meant for a loading screen or a background task. Uses
-    /// all threads of Bevy's compute pool where it exists; the result is the same, bit by bit, on any number of
-    /// threads.
-    pub fn synthesise(settings: &FieldSettings) -> Result<Self, WindError> {
+    /// all threads of Bevy's compute pool where it exists. The result is the same, bit by bit, on any number of threads.
+    ///
+    /// # Errors
+    /// The first setting outside its domain.
+    pub fn synthesise(settings: &FieldSettings) -> Result<Self, SettingError> {
         settings.validate()?;
-        let profile = LogProfile::from_reference(
-            settings.mean_speed_m_s,
-            settings.roughness_length_m,
-            settings.displacement_height_m,
-        );
+        let profile = LogProfile::from_reference(settings.speed, settings.roughness_m, settings.displacement_m);
         Ok(Self {
             frame: WindFrame::new(settings.direction),
             turbulence: synthesis::synthesise(settings, &profile, ComputeTaskPool::try_get().map(|pool| &**pool)),
@@ -106,7 +106,7 @@ impl WindField {
     }
 
     /// How much later than at along = 0 the same turbulence passes a place `along_m` down the wind, s.
-    pub fn delay_s(&self, along_m: f32) -> f64 {
+    pub(crate) fn delay_s(&self, along_m: f32) -> f64 {
         f64::from(along_m) / f64::from(self.convective_speed_m_s())
     }
 
@@ -136,8 +136,8 @@ impl WindField {
     }
 
     /// The speed with which the turbulence drifts along, m/s: the mean speed at 10 m, but at least 0.5.
-    pub fn convective_speed_m_s(&self) -> f32 {
-        self.settings.mean_speed_m_s.max(SLOWEST_DRIFT_M_S)
+    pub(crate) fn convective_speed_m_s(&self) -> f32 {
+        self.settings.speed.max(SLOWEST_DRIFT_M_S)
     }
 
     /// How much of the variance of u, v and w (along, across, up) lies in the band of frequencies that the field
@@ -161,8 +161,7 @@ impl WindField {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::wind::FieldResolution;
+    use super::{super::settings::FieldResolution, *};
     use bevy::math::{Dir2, Vec2};
 
     fn small_settings() -> FieldSettings {
@@ -188,11 +187,11 @@ mod tests {
     #[test]
     fn bad_settings_are_refused() {
         let settings = FieldSettings { gustiness: f32::NAN, ..small_settings() };
-        assert!(matches!(WindField::synthesise(&settings), Err(WindError::OutOfRange { field: "gustiness", .. })));
+        assert!(WindField::synthesise(&settings).is_err_and(|error| error.field == "gustiness"));
     }
 
     #[test]
-    fn the_field_repeats_after_its_period_in_time_and_across() {
+    fn field_is_periodic_in_time_and_across_the_wind() {
         let field = small_field();
         let across = field.frame().across * field.width_m() as f32;
         for (position, time_s) in places() {
@@ -241,8 +240,8 @@ mod tests {
     }
 
     #[test]
-    fn a_calm_is_still_and_finite() {
-        let calm = FieldSettings { mean_speed_m_s: 0.0, ..small_settings() };
+    fn calm_field_is_zero_and_finite() {
+        let calm = FieldSettings { speed: 0.0, ..small_settings() };
         let field = WindField::synthesise(&calm).unwrap();
         assert_eq!(field.resolved_fraction(), [0.0; 3]);
         assert_eq!(field.convective_speed_m_s(), 0.5);
@@ -254,20 +253,24 @@ mod tests {
     #[test]
     fn extreme_settings_give_finite_fields() {
         let resolution = FieldResolution { time_samples: 16, columns: 1, levels: 1, ..small_settings().resolution };
-        let breath = FieldSettings { mean_speed_m_s: 1e-30, ..small_settings() };
-        let single = FieldSettings { mean_speed_m_s: 75.0, gustiness: 3.0, resolution, ..small_settings() };
-        let mut stiff = small_settings();
-        for decay in [&mut stiff.coherence.along, &mut stiff.coherence.across, &mut stiff.coherence.up] {
+        let nearly_calm = FieldSettings { speed: 1e-30, ..small_settings() };
+        let single = FieldSettings { speed: 75.0, gustiness: 3.0, resolution, ..small_settings() };
+        let mut fully_coherent = small_settings();
+        for decay in [
+            &mut fully_coherent.coherence.along,
+            &mut fully_coherent.coherence.across,
+            &mut fully_coherent.coherence.up,
+        ] {
             (decay.lateral, decay.vertical) = (0.0, 0.0);
         }
-        for settings in [breath, single, stiff] {
+        for settings in [nearly_calm, single, fully_coherent] {
             let field = WindField::synthesise(&settings).unwrap();
             assert!(places().all(|(position, time_s)| field.sample(position, time_s).is_finite()));
         }
     }
 
     #[test]
-    fn any_position_and_time_gives_a_finite_velocity() {
+    fn velocity_is_finite_at_any_position_and_time() {
         let field = small_field();
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN] {
             for position in [Vec3::new(bad, 2.0, 1.0), Vec3::new(1.0, bad, 1.0), Vec3::new(1.0, 2.0, bad)] {

@@ -1,4 +1,4 @@
-//! The frame in which the wind blows along the first axis.
+//! Wind coordinates: the frame in which the mean wind blows along the first axis.
 //!
 //! Wind coordinates are (along, up, across): along = where the mean wind blows to, up = the world's Y,
 //! across = along x up. The frame is right-handed, as the world is.
@@ -47,7 +47,7 @@ mod tests {
     }
 
     #[test]
-    fn there_and_back_is_the_same_vector() {
+    fn to_world_inverts_to_wind() {
         let vector = Vec3::new(1.0, -2.0, 3.0);
         for step in 0..16 {
             let frame = WindFrame::new(Dir2::new(Vec2::from_angle(step as f32 * 0.4)).unwrap());

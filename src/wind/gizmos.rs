@@ -1,6 +1,6 @@
-//! Draws the wind at its cells as arrows.
+//! Draws the wind at every wind cell as an arrow.
 
-use super::cells::WindCell;
+use super::components::WindCell;
 use bevy::{gizmos::GizmoPlugin, prelude::*};
 
 /// Draws an arrow for every [`WindCell`] while [`WindGizmos::enabled`] is set. Without a gizmo renderer it does nothing.

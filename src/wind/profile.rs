@@ -5,17 +5,15 @@
 //! ```
 //!
 //! u* = friction velocity [m/s], kappa = 0.4, z0 = roughness length [m] (0.01 low grass to 1 pine forest, after the
-//! paper), d = displacement height [m]: where the ground seems to be for the flow above a dense canopy.
+//! paper), d = displacement height [m]: the effective ground of the flow above a dense canopy.
 
+use crate::constants::REFERENCE_HEIGHT_M;
 use std::f32::consts::E;
 
-/// Height above ground at which a mean wind speed is given, m: the meteorological standard.
-pub const REFERENCE_HEIGHT_M: f32 = 10.0;
-
 /// The von Karman constant of the logarithmic law (Setas et al., equation 10).
-pub const VON_KARMAN: f32 = 0.4;
+const VON_KARMAN: f32 = 0.4;
 
-/// Outside the atmosphere: the law has long ceased to hold, but stays finite.
+/// Far above the atmosphere. The law does not hold there, but stays finite.
 const GREATEST_HEIGHT_M: f32 = 1e6;
 
 /// Turbulence keeps the scales of this many roughness lengths above the displacement plane where a point is lower:
@@ -28,9 +26,9 @@ pub struct LogProfile {
     /// u*, m/s. Its square is the shear stress at the ground over the density of air.
     pub friction_velocity_m_s: f32,
     /// z0, m.
-    pub roughness_length_m: f32,
+    pub roughness_m: f32,
     /// d, m.
-    pub displacement_height_m: f32,
+    pub displacement_m: f32,
 }
 
 impl LogProfile {
@@ -39,32 +37,28 @@ impl LogProfile {
     /// That height must lie at least e roughness lengths above the displacement plane, as validated
     /// [`FieldSettings`](super::FieldSettings) guarantee; nearer than that the friction velocity is held at 0.4 times
     /// the speed, so that it stays finite.
-    pub fn from_reference(speed_m_s: f32, roughness_length_m: f32, displacement_height_m: f32) -> Self {
-        let roughness_lengths = (REFERENCE_HEIGHT_M - displacement_height_m) / roughness_length_m;
+    pub fn from_reference(speed_m_s: f32, roughness_m: f32, displacement_m: f32) -> Self {
+        let roughness_lengths = (REFERENCE_HEIGHT_M - displacement_m) / roughness_m;
         let friction_velocity_m_s = VON_KARMAN * speed_m_s / roughness_lengths.max(LOWEST_ROUGHNESS_LENGTHS).ln();
-        Self { friction_velocity_m_s, roughness_length_m, displacement_height_m }
+        Self { friction_velocity_m_s, roughness_m, displacement_m }
     }
 
     /// U(z), m/s, at any height above ground; 0 at and below d + z0.
     pub fn speed_at(&self, height_m: f32) -> f32 {
-        let height_m = height_m - self.displacement_height_m;
-        if height_m > self.roughness_length_m {
-            self.speed_above_displacement(height_m.min(GREATEST_HEIGHT_M))
-        } else {
-            0.0
-        }
+        let height_m = height_m - self.displacement_m;
+        if height_m > self.roughness_m { self.speed_above_displacement(height_m.min(GREATEST_HEIGHT_M)) } else { 0.0 }
     }
 
     /// The height above the displacement plane, m, that sets the scales of the turbulence at `height_m` above ground,
     /// and the mean speed there, m/s. In and below the roughness layer: those of e z0, so that both stay positive.
     pub(super) fn turbulence_scales(&self, height_m: f32) -> (f32, f32) {
-        let lowest_m = LOWEST_ROUGHNESS_LENGTHS * self.roughness_length_m;
-        let height_m = (height_m - self.displacement_height_m).max(lowest_m);
+        let lowest_m = LOWEST_ROUGHNESS_LENGTHS * self.roughness_m;
+        let height_m = (height_m - self.displacement_m).max(lowest_m);
         (height_m, self.speed_above_displacement(height_m))
     }
 
     fn speed_above_displacement(&self, height_m: f32) -> f32 {
-        self.friction_velocity_m_s / VON_KARMAN * (height_m / self.roughness_length_m).ln()
+        self.friction_velocity_m_s / VON_KARMAN * (height_m / self.roughness_m).ln()
     }
 }
 
@@ -102,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn friction_velocity_is_finite_when_the_canopy_swallows_the_reference_height() {
+    fn friction_velocity_is_finite_when_the_reference_height_is_inside_the_canopy() {
         let profile = LogProfile::from_reference(8.0, 1.0, 12.0);
         assert_relative_eq!(profile.friction_velocity_m_s, 3.2, max_relative = 1e-6);
     }

@@ -1,16 +1,17 @@
-//! What a user can choose about a wind field, and the limits that keep every choice finite.
+//! The settings of a wind field, and the limits that keep every field finite.
 
-use super::{CoherenceDecay, DecayCoefficients, WindError};
+use super::spectrum::{CoherenceDecay, DecayCoefficients};
+use crate::setting::{SettingError, require};
 use bevy::{math::Dir2, reflect::Reflect};
 use std::ops::RangeInclusive;
 
-/// 75 m/s is above any hurricane's mean speed.
-const MEAN_SPEED_M_S: RangeInclusive<f32> = 0.0..=75.0;
-/// Ice to the centre of a city.
-const ROUGHNESS_LENGTH_M: RangeInclusive<f32> = 1e-4..=2.0;
+/// m/s. No hurricane has a mean speed above 75 m/s.
+const SPEED: RangeInclusive<f32> = 0.0..=75.0;
+/// From ice to the centre of a city.
+const ROUGHNESS_M: RangeInclusive<f32> = 1e-4..=2.0;
 /// With the greatest roughness length, 10 m above ground is still e of them above the displacement plane, where the
 /// logarithmic law begins to hold.
-const DISPLACEMENT_HEIGHT_M: RangeInclusive<f32> = 0.0..=4.5;
+const DISPLACEMENT_M: RangeInclusive<f32> = 0.0..=4.5;
 const GUSTINESS: RangeInclusive<f32> = 0.0..=3.0;
 const DECAY: RangeInclusive<f32> = 0.0..=100.0;
 
@@ -24,19 +25,20 @@ const TIME_STEP_S: RangeInclusive<f32> = 0.005..=2.0;
 const COLUMN_SPACING_M: RangeInclusive<f32> = 0.1..=1000.0;
 const LEVEL_SPACING_M: RangeInclusive<f32> = 0.1..=100.0;
 
-/// Everything that determines a [`WindField`](super::WindField).
+/// Everything that determines a [`WindField`](super::WindField). Where [`Wind`](super::Wind) has the same setting, it has
+/// the same name.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 pub struct FieldSettings {
     /// Mean wind speed 10 m above ground. units: m/s, domain: \[0, 75\].
-    pub mean_speed_m_s: f32,
+    pub speed: f32,
     /// Where the mean wind blows to, in the world's (X, Z).
     pub direction: Dir2,
-    /// z0, the measure of the ground's roughness: 0.01 for low grass to 1 for a pine forest (the paper's section
+    /// z0, the roughness length of the ground: 0.01 for low grass to 1 for a pine forest (the paper's section
     /// 3.1.1). units: m, domain: \[0.0001, 2\].
-    pub roughness_length_m: f32,
+    pub roughness_m: f32,
     /// d, the height of the plane on which the wind profile stands; about 0.7 of the height of a dense canopy.
     /// units: m, domain: \[0, 4.5\], because the speed is given at 10 m and must be above the canopy there.
-    pub displacement_height_m: f32,
+    pub displacement_m: f32,
     /// Factor on the standard deviation of the turbulence; 1 = the spectra's own. domain: \[0, 3\].
     pub gustiness: f32,
     /// Selects the realisation. The same settings with the same seed give the same field, bit by bit.
@@ -54,7 +56,7 @@ pub struct FieldSettings {
 pub struct FieldResolution {
     /// Samples in a period of time; a power of two. domain: \[16, 65536\].
     pub time_samples: u32,
-    /// Columns in a period across the wind. domain: \[1, 128\]. One column blows alike everywhere across.
+    /// Columns in a period across the wind. domain: \[1, 128\]. With one column the wind is the same everywhere across.
     pub columns: u32,
     /// Levels in height. domain: \[1, 32\]. The product of the three counts is at most 2^23.
     pub levels: u32,
@@ -66,7 +68,8 @@ pub struct FieldResolution {
     pub level_spacing_m: f32,
 }
 
-/// A sampled field resolves only a band of frequencies: from one in a period to half of one in a sample.
+/// What to do about turbulence outside the band of frequencies that a sampled field resolves: from one cycle in a period
+/// to half a cycle in a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 pub enum TurbulenceBand {
     /// Every resolved frequency has its true power, so that the variance is the resolved band's (algorithm 3 without
@@ -82,10 +85,10 @@ impl Default for FieldSettings {
     /// A fresh breeze over open country with scattered trees: turbulence of 0.21 of the mean speed at 10 m.
     fn default() -> Self {
         Self {
-            mean_speed_m_s: 8.0,
+            speed: 8.0,
             direction: Dir2::X,
-            roughness_length_m: 0.1,
-            displacement_height_m: 0.0,
+            roughness_m: 0.1,
+            displacement_m: 0.0,
             gustiness: 1.0,
             seed: 0,
             resolution: FieldResolution::default(),
@@ -121,7 +124,7 @@ impl FieldResolution {
     }
 
     /// Height of a level above ground, m: the lowest, level 0, is one spacing up.
-    pub fn level_height_m(&self, level: usize) -> f32 {
+    pub(super) fn level_height_m(&self, level: usize) -> f32 {
         (level as f32 + 1.0) * self.level_spacing_m
     }
 
@@ -132,7 +135,7 @@ impl FieldResolution {
 
 impl FieldSettings {
     /// Whether a field can be made of these settings; if not, the first thing that is wrong.
-    pub fn validate(&self) -> Result<(), WindError> {
+    pub fn validate(&self) -> Result<(), SettingError> {
         match self.clamped().1.into_iter().next() {
             Some(error) => Err(error),
             None => Ok(()),
@@ -140,29 +143,19 @@ impl FieldSettings {
     }
 
     /// The nearest settings that are allowed, and what was wrong with these. What is not a number becomes the default.
-    pub fn clamped(&self) -> (Self, Vec<WindError>) {
+    pub(super) fn clamped(&self) -> (Self, Vec<SettingError>) {
         let mut settings = self.clone();
         let errors = settings.clamp();
         (settings, errors)
     }
 
-    fn clamp(&mut self) -> Vec<WindError> {
+    fn clamp(&mut self) -> Vec<SettingError> {
         let default = Self::default();
         let mut limits = Limits::default();
-        limits.number("mean_speed_m_s", &mut self.mean_speed_m_s, MEAN_SPEED_M_S, default.mean_speed_m_s);
+        limits.number("speed", &mut self.speed, SPEED, default.speed);
         limits.direction("direction", &mut self.direction, default.direction);
-        limits.number(
-            "roughness_length_m",
-            &mut self.roughness_length_m,
-            ROUGHNESS_LENGTH_M,
-            default.roughness_length_m,
-        );
-        limits.number(
-            "displacement_height_m",
-            &mut self.displacement_height_m,
-            DISPLACEMENT_HEIGHT_M,
-            default.displacement_height_m,
-        );
+        limits.number("roughness_m", &mut self.roughness_m, ROUGHNESS_M, default.roughness_m);
+        limits.number("displacement_m", &mut self.displacement_m, DISPLACEMENT_M, default.displacement_m);
         limits.number("gustiness", &mut self.gustiness, GUSTINESS, default.gustiness);
         limits.resolution(&mut self.resolution, &default.resolution);
         let CoherenceDecay { along, across, up } = &mut self.coherence;
@@ -173,47 +166,33 @@ impl FieldSettings {
     }
 }
 
-/// Puts values right and notes what was wrong.
+/// Brings values into their ranges and collects what was wrong.
 #[derive(Default)]
 struct Limits {
-    errors: Vec<WindError>,
+    errors: Vec<SettingError>,
 }
 
 impl Limits {
     fn number(&mut self, field: &'static str, value: &mut f32, allowed: RangeInclusive<f32>, default: f32) {
-        if allowed.contains(value) {
-            return;
+        if let Err(error) = require(field, *value, allowed.clone()) {
+            self.errors.push(error);
+            *value = if value.is_nan() { default } else { value.clamp(*allowed.start(), *allowed.end()) };
         }
-        let (lowest, highest) = allowed.into_inner();
-        self.errors.push(WindError::OutOfRange {
-            field,
-            value: f64::from(*value),
-            lowest: f64::from(lowest),
-            highest: f64::from(highest),
-        });
-        *value = if value.is_nan() { default } else { value.clamp(lowest, highest) };
     }
 
     fn count(&mut self, field: &'static str, value: &mut u32, allowed: RangeInclusive<u32>) {
-        if allowed.contains(value) {
-            return;
+        if let Err(error) = require(field, *value, allowed.clone()) {
+            self.errors.push(error);
+            *value = (*value).clamp(*allowed.start(), *allowed.end());
         }
-        let (lowest, highest) = allowed.into_inner();
-        self.errors.push(WindError::OutOfRange {
-            field,
-            value: f64::from(*value),
-            lowest: f64::from(lowest),
-            highest: f64::from(highest),
-        });
-        *value = (*value).clamp(lowest, highest);
     }
 
     fn direction(&mut self, field: &'static str, direction: &mut Dir2, default: Dir2) {
-        // Bevy's own tolerance for a direction that has drifted.
+        // Bevy's own tolerance for a direction that is no longer quite normalised.
         if (direction.length_squared() - 1.0).abs() <= 2e-2 {
             return;
         }
-        self.errors.push(WindError::NotAUnitVector { field, x: direction.x, y: direction.y });
+        self.errors.push(SettingError::new(field, direction.as_vec2(), "a vector of length 1"));
         *direction = Dir2::new(direction.as_vec2()).unwrap_or(default);
     }
 
@@ -245,17 +224,18 @@ impl Limits {
 
     fn power_of_two(&mut self, field: &'static str, value: &mut u32) {
         if !value.is_power_of_two() {
-            self.errors.push(WindError::NotAPowerOfTwo { field, value: *value });
+            self.errors.push(SettingError::new(field, *value, "a power of two"));
             *value = value.next_power_of_two();
         }
     }
 
-    /// Shortens the period until the field fits: columns x levels alone always do.
+    /// Shortens the period until the field fits. Columns x levels alone always fit.
     fn product(&mut self, resolution: &mut FieldResolution) {
         if resolution.samples() <= MOST_SAMPLES {
             return;
         }
-        self.errors.push(WindError::TooManySamples { samples: resolution.samples(), most: MOST_SAMPLES });
+        let allowed = format!("at most {MOST_SAMPLES} as time_samples x columns x levels");
+        self.errors.push(SettingError::new("resolution", resolution.samples(), allowed));
         while resolution.samples() > MOST_SAMPLES {
             resolution.time_samples /= 2;
         }
@@ -279,27 +259,27 @@ mod tests {
 
     #[test]
     fn an_error_names_the_field_the_value_and_what_is_allowed() {
-        let message = first_error(|settings| settings.mean_speed_m_s = -3.0);
-        assert_eq!(message, "wind setting `mean_speed_m_s` is -3, but must be a number from 0 to 75");
+        let message = first_error(|settings| settings.speed = -3.0);
+        assert_eq!(message, "`speed` is -3, but must be 0 to 75");
         let message = first_error(|settings| settings.resolution.time_samples = 1000);
-        assert_eq!(message, "wind setting `resolution.time_samples` is 1000, but must be a power of two");
+        assert_eq!(message, "`resolution.time_samples` is 1000, but must be a power of two");
         assert!(first_error(|settings| settings.coherence.up.vertical = f32::NAN).contains("coherence.up.vertical"));
     }
 
     #[test]
-    fn clamping_takes_the_nearest_allowed_value_and_the_default_for_what_is_no_number() {
+    fn clamping_takes_the_nearest_allowed_value_and_the_default_for_nan() {
         let wrong = FieldSettings {
-            mean_speed_m_s: f32::INFINITY,
-            roughness_length_m: f32::NAN,
-            displacement_height_m: -1.0,
+            speed: f32::INFINITY,
+            roughness_m: f32::NAN,
+            displacement_m: -1.0,
             gustiness: 9.0,
             ..Default::default()
         };
         let (settings, errors) = wrong.clamped();
         assert_eq!(errors.len(), 4);
-        assert_eq!(settings.mean_speed_m_s, 75.0);
-        assert_eq!(settings.roughness_length_m, FieldSettings::default().roughness_length_m);
-        assert_eq!(settings.displacement_height_m, 0.0);
+        assert_eq!(settings.speed, 75.0);
+        assert_eq!(settings.roughness_m, FieldSettings::default().roughness_m);
+        assert_eq!(settings.displacement_m, 0.0);
         assert_eq!(settings.gustiness, 3.0);
         assert_eq!(settings.validate(), Ok(()));
     }

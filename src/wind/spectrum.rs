@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 
 /// A component of the turbulent velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TurbulenceComponent {
+pub(super) enum TurbulenceComponent {
     /// The paper's u, along the mean wind.
     Along,
     /// The paper's v, horizontal and across the mean wind.
@@ -84,7 +84,8 @@ impl DecayCoefficients {
     /// exp(-f^), the correlation of the parts with frequency f of two points' velocities (equation 12).
     ///
     /// `mean_speed_m_s` > 0 is the mean of the mean speeds at the two points.
-    pub fn root_coherence(self, frequency_hz: f64, lateral_m: f64, vertical_m: f64, mean_speed_m_s: f64) -> f64 {
+    #[cfg(test)]
+    pub(super) fn root_coherence(self, frequency_hz: f64, lateral_m: f64, vertical_m: f64, mean_speed_m_s: f64) -> f64 {
         (-frequency_hz * self.decay_time_s(lateral_m, vertical_m, mean_speed_m_s)).exp()
     }
 
@@ -113,7 +114,7 @@ pub struct CoherenceDecay {
 
 impl CoherenceDecay {
     /// The coefficients of one component.
-    pub fn of(&self, component: TurbulenceComponent) -> DecayCoefficients {
+    pub(super) fn of(&self, component: TurbulenceComponent) -> DecayCoefficients {
         match component {
             TurbulenceComponent::Along => self.along,
             TurbulenceComponent::Across => self.across,

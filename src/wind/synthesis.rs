@@ -11,9 +11,11 @@
 //! the profile's; so is the one at half the sampling rate, where a sampled sine cannot be told from its phase.
 
 use super::{
-    FieldSettings, LogProfile, TurbulenceBand, TurbulenceComponent,
     coherence::{CoherenceFactors, CoherenceKernel, decay_times_s, exponentials},
     factorisation::packed_columns,
+    profile::LogProfile,
+    settings::{FieldSettings, TurbulenceBand},
+    spectrum::TurbulenceComponent,
 };
 use bevy::{
     math::Vec3A,
@@ -88,7 +90,7 @@ impl Grid {
     }
 }
 
-/// The amplitudes that the spectrum asks for.
+/// The amplitudes of the spectrum.
 struct BandSpectrum {
     /// sqrt(2 S df), m/s: \[bin\]\[level\].
     amplitudes: Vec<f32>,

@@ -1,34 +1,30 @@
-//! A row of firs before a camera: what became of them on a device that can do less than ours.
+//! A row of firs in front of a camera, on a device with limits.
 
-use super::{headless_app, read_every_frame, render_frame, update_until};
+use super::{capture, headless_app, read_every_frame, update_until};
 use bevy::{
     camera::RenderTarget,
     prelude::*,
-    render::{
-        render_resource::{TextureFormat, WgpuLimits},
-        view::screenshot::{Screenshot, ScreenshotCaptured},
-    },
+    render::{RenderApp, mesh::allocator::MeshAllocatorSettings, render_resource::WgpuLimits},
 };
 use bevy_windwood::{
     prelude::*,
-    sway::{DrawPath, Foliage, StandTables},
+    render::{RenderCapabilities, SwayBuffers, TreeMeshes, TreePart},
 };
-use std::{
-    sync::{Arc, Mutex},
-    time::Duration,
-};
+use image::RgbaImage;
+use std::time::Duration;
 
 /// Number of firs.
 pub const TREES: usize = 12;
+const SIZE: (u32, u32) = (160, 80);
 const BACKGROUND: Color = Color::srgb(1.0, 0.0, 1.0);
 
-/// What became of a row of firs.
+/// How the firs are drawn.
 pub struct Outcome {
-    /// What the device was found to be able to do.
-    pub path: DrawPath,
+    /// What the device can do.
+    pub path: RenderCapabilities,
     /// Trees whose wood, and whose leaves, have materials that sway.
     pub swaying: [usize; 2],
-    /// Trees that are posed.
+    /// Trees with poses.
     pub posed: usize,
     /// Share of the picture that is not background.
     pub covered: f32,
@@ -36,7 +32,11 @@ pub struct Outcome {
 
 /// Draws a row of firs on a device that is held to `limits`.
 pub fn draw_firs(limits: WgpuLimits) -> Outcome {
+    let binding_bytes = limits.max_storage_buffer_binding_size;
     let mut app = headless_app(Duration::from_millis(16), Some(limits));
+    if binding_bytes > 0 {
+        limit_mesh_buffers(&mut app, binding_bytes);
+    }
     app.insert_resource(ClearColor(BACKGROUND));
     app.finish();
     app.cleanup();
@@ -45,33 +45,43 @@ pub fn draw_firs(limits: WgpuLimits) -> Outcome {
         let at = Vec3::X * (6.0 * (tree as f32 - 0.5 * TREES as f32));
         app.world_mut().spawn((Tree::new(species.clone()), Transform::from_translation(at)));
     }
-    let target = camera_on_a_picture(&mut app);
-    let dressed = update_until(&mut app, |world| {
-        let trees = world.query_filtered::<(), (With<Tree>, With<Mesh3d>)>().iter(world).count();
+    let target = spawn_camera_and_sun(&mut app);
+    let is_ready = update_until(&mut app, |world| {
+        let trees = world.query_filtered::<(), (With<Tree>, With<TreeMeshes>)>().iter(world).count();
         trees == TREES && world.resource::<ActiveSway>().is_ready()
     });
-    assert!(dressed, "the trees did not get ready");
-    let path = *app.world().resource::<DrawPath>();
+    assert!(is_ready, "the trees were not ready in time");
+    let path = *app.world().resource::<RenderCapabilities>();
     let rows = path.sways.then(|| {
-        let trees = app.world().resource::<StandTables>().trees.clone();
+        let trees = app.world().resource::<SwayBuffers>().trees.clone();
         read_every_frame(app.world_mut(), trees)
     });
-    let picture = photograph(&mut app, &target);
+    (0..4).for_each(|_| capture::step(&mut app));
+    let picture = capture::capture(&mut app, &target, SIZE).expect("the picture comes back");
     let posed = rows.map_or(0, |rows| {
-        let rows = rows.lock().expect("nobody panics with it").take().expect("the rows come back");
-        // `TreeRow` of `instances.wesl` has 48 bytes; its number of beams is the tenth of its words.
+        let rows = rows.lock().expect("the lock is not poisoned").take().expect("the rows come back");
+        // A `TreeRow` of `instances.wesl` has 48 bytes. Its number of beams is the tenth word.
         rows.chunks_exact(48).filter(|row| row[36..40] != [0; 4]).count()
     });
     let world = app.world_mut();
     type Still = With<MeshMaterial3d<StandardMaterial>>;
-    let wood = TREES - world.query_filtered::<(), (With<Tree>, Still)>().iter(world).count();
-    let leaves = TREES - world.query_filtered::<(), (With<Foliage>, Still)>().iter(world).count();
-    Outcome { path, swaying: [wood, leaves], posed, covered: covered_share(&picture) }
+    let still: Vec<TreePart> = world.query_filtered::<&TreePart, Still>().iter(world).copied().collect();
+    let swaying = [TreePart::Wood, TreePart::Leaves].map(|part| TREES - still.iter().filter(|it| **it == part).count());
+    Outcome { path, swaying, posed, covered: covered_share(&picture) }
 }
 
-fn camera_on_a_picture(app: &mut App) -> Handle<Image> {
-    let image = Image::new_target_texture(160, 80, TextureFormat::Rgba8UnormSrgb, None);
-    let target = app.world_mut().resource_mut::<Assets<Image>>().add(image);
+/// Bevy's mesh buffers have 1 MiB or more by default, and are bound as a whole.
+fn limit_mesh_buffers(app: &mut App, bytes: u64) {
+    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+        let mut settings = MeshAllocatorSettings::default();
+        settings.min_slab_size = settings.min_slab_size.min(bytes);
+        render_app.insert_resource(settings);
+    }
+}
+
+/// The camera has no depth prepass: not every device under test can have one.
+fn spawn_camera_and_sun(app: &mut App) -> Handle<Image> {
+    let target = capture::target(app, SIZE);
     app.world_mut().spawn((
         Camera3d::default(),
         Msaa::Off,
@@ -82,28 +92,8 @@ fn camera_on_a_picture(app: &mut App) -> Handle<Image> {
     target
 }
 
-fn photograph(app: &mut App, target: &Handle<Image>) -> Image {
-    for _ in 0..4 {
-        render_frame(app).expect("the frame is rendered");
-    }
-    let slot: Arc<Mutex<Option<Image>>> = Arc::default();
-    let filled = slot.clone();
-    app.world_mut().spawn(Screenshot::image(target.clone())).observe(move |captured: On<ScreenshotCaptured>| {
-        *filled.lock().expect("nobody panics with it") = Some(captured.image.clone());
-    });
-    for _ in 0..16 {
-        render_frame(app).expect("the frame is rendered");
-        if let Some(picture) = slot.lock().expect("nobody panics with it").take() {
-            return picture;
-        }
-    }
-    panic!("the picture did not come back");
-}
-
-/// Share of texels in which green is not far below red and blue, as it is in the background.
-fn covered_share(picture: &Image) -> f32 {
-    let texels = picture.data.as_ref().expect("it was read back").chunks_exact(4);
-    let count = texels.len();
-    let drawn = texels.filter(|texel| i32::from(texel[0]) - i32::from(texel[1]) < 64).count();
-    drawn as f32 / count as f32
+/// Share of pixels that are not background: their green is not far below their red.
+fn covered_share(picture: &RgbaImage) -> f32 {
+    let drawn = picture.pixels().filter(|pixel| i32::from(pixel.0[0]) - i32::from(pixel.0[1]) < 64).count();
+    drawn as f32 / picture.pixels().len() as f32
 }

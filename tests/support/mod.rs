@@ -1,78 +1,56 @@
-//! An app that draws without a window, for tests and for `validate`. Needs a Vulkan driver; Mesa's software one will do.
+//! Apps that render without a window, for tests and for `validate`. They need a Vulkan driver. Mesa's software one will do.
 
-// Each of the programs that take this in uses a part of it.
+// Each program that includes this folder uses a part of it.
 #![allow(dead_code)]
 
 #[path = "../../examples/support/capture.rs"]
 pub mod capture;
 pub mod firs;
+pub mod forest;
 pub mod plants;
-pub mod wood;
+pub mod probe;
 
 use bevy::{
     log::LogPlugin,
     prelude::*,
     render::{
-        RenderPlugin,
         gpu_readback::{Readback, ReadbackComplete},
-        pipelined_rendering::PipelinedRenderingPlugin,
-        render_resource::{PollType, WgpuLimits},
-        renderer::RenderDevice,
-        settings::{RenderCreation, WgpuSettings},
+        render_resource::WgpuLimits,
         storage::ShaderBuffer,
     },
     time::TimeUpdateStrategy,
-    window::ExitCondition,
-    winit::WinitPlugin,
 };
 use bevy_windwood::{
     dynamics::{BeamPose, TreePoser},
     prelude::*,
     tree::TreeModel,
 };
+#[allow(unused_imports, reason = "not every test renders frame by frame")]
+pub use capture::render_frame;
 use std::{
     sync::{Arc, Mutex},
     time::Duration,
 };
 
-/// The default plugins and ours, without a window, every frame rendered before the next begins; the clock advances by
-/// `frame` at each update. `limits` are those that the device is held to.
+/// An app with the default plugins and ours, without a window. Each update renders its frame before it returns, and advances
+/// the clock by `frame`. The device is held to `limits`.
 pub fn headless_app(frame: Duration, limits: Option<WgpuLimits>) -> App {
+    let engine = capture::headless_engine(limits).set(LogPlugin { filter: "error".into(), ..default() });
     let mut app = App::new();
-    let settings = WgpuSettings { constrained_limits: limits, ..default() };
-    let render = RenderPlugin {
-        render_creation: RenderCreation::Automatic(Box::new(settings)),
-        synchronous_pipeline_compilation: true,
-        ..default()
-    };
-    let plugins = DefaultPlugins
-        .set(WindowPlugin { primary_window: None, exit_condition: ExitCondition::DontExit, ..default() })
-        .set(render)
-        .set(LogPlugin { filter: "error".into(), ..default() })
-        .disable::<PipelinedRenderingPlugin>()
-        .disable::<WinitPlugin>();
-    app.add_plugins((plugins, WindwoodPlugins)).insert_resource(TimeUpdateStrategy::ManualDuration(frame));
+    app.add_plugins((engine, WindwoodPlugins)).insert_resource(TimeUpdateStrategy::ManualDuration(frame));
     app
 }
 
-/// Updates until `done`; whether it came about within some ten seconds of background work.
-pub fn update_until(app: &mut App, done: impl Fn(&mut World) -> bool) -> bool {
+/// Updates until `is_done`, for ten seconds or more. Returns whether it was.
+pub fn update_until(app: &mut App, is_done: impl Fn(&mut World) -> bool) -> bool {
     (0..2000).any(|_| {
         app.update();
         std::thread::sleep(Duration::from_millis(5));
-        done(app.world_mut())
+        is_done(app.world_mut())
     })
 }
 
-/// One frame, rendered to the end.
-pub fn render_frame(app: &mut App) -> Result<(), String> {
-    app.update();
-    let poll = PollType::Wait { submission_index: None, timeout: None };
-    let polled = app.world().resource::<RenderDevice>().wgpu_device().poll(poll);
-    polled.map(drop).map_err(|error| error.to_string())
-}
-
-/// What last came back from the graphics processor.
+/// The latest bytes that were read back from the GPU.
 pub type ReadBack = Arc<Mutex<Option<Vec<u8>>>>;
 
 /// Reads a buffer back after every frame.
@@ -92,15 +70,16 @@ pub fn floats(bytes: &[u8]) -> Vec<f32> {
     bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
 }
 
-/// A tree that stands at `stands`, posed by the processor in the wind that blows at `time_s`.
-pub fn processor_poses(sway: &ActiveSway, model: &TreeModel, stands: &Transform, time_s: f64) -> Vec<BeamPose> {
+/// Poses of the beams of a tree in the wind at a time, computed on the CPU.
+pub fn cpu_poses(sway: &ActiveSway, model: &TreeModel, tree: &Transform, time_s: f64) -> Vec<BeamPose> {
     let mut poses = vec![BeamPose::REST; model.beams.len()];
     if let Some(wind) = sway.now().next().map(|wind| wind.response) {
         let frame = wind.field.frame();
-        let to_wind = Quat::from_mat3(&Mat3::from_cols(frame.along, Vec3::Y, frame.across)).inverse() * stands.rotation;
+        let wind_from_world = Mat3::from_cols(frame.along, Vec3::Y, frame.across).transpose();
+        let to_wind = wind_from_world * Mat3::from_quat(tree.rotation);
         let classes = &wind.table.classes;
-        let poser = TreePoser::new(&model.beams, wind.basis.map(), classes, to_wind, stands.scale.y);
-        let (column, tau_s) = wind.place(stands.translation, time_s);
+        let poser = TreePoser::new(&model.beams, wind.basis.map(), classes, to_wind, tree.scale.y);
+        let (column, tau_s) = wind.place(tree.translation, time_s);
         let mut responses = vec![Vec4::ZERO; classes.count];
         wind.table.responses(column, tau_s, &mut responses);
         poser.pose(&responses, &mut poses);

@@ -1,4 +1,4 @@
-//! A meadow with a fire in it before a camera.
+//! A patch of grass and a fire in front of a camera.
 
 use super::update_until;
 use bevy::{
@@ -13,8 +13,8 @@ use bevy::{
 };
 use bevy_windwood::prelude::*;
 
-/// Spawns a small meadow with a fire, lights that cast shadows, and a camera with the passes that are asked for; updates
-/// until all is drawn. The patch and the fire.
+/// Spawns a small patch of grass, a fire, a light and a camera, and updates until everything is drawn. With `passes` the camera has
+/// all prepasses and lights have shadows. Returns the patch and the fire.
 pub fn draw_meadow(app: &mut App, passes: bool) -> [Entity; 2] {
     app.finish();
     app.cleanup();
@@ -37,7 +37,7 @@ pub fn draw_meadow(app: &mut App, passes: bool) -> [Entity; 2] {
         [patch, fire].iter().all(|entity| world.get::<Mesh3d>(*entity).is_some())
             && world.resource::<ActiveSway>().is_ready()
     };
-    assert!(update_until(app, is_drawn), "meadow and fire did not get ready");
+    assert!(update_until(app, is_drawn), "grass and fire were not drawn in time");
     (0..5).for_each(|_| app.update());
     [patch, fire]
 }

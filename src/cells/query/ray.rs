@@ -1,12 +1,12 @@
 //! The first trunk on a ray.
 //!
 //! The ray is walked cell by cell along the axis on which it makes more way: a slab of cells at a time, of which it crosses
-//! one or two, three where a trunk may reach over the border. Each cell is looked at once, and the walk ends when the best
+//! one or two, three where a trunk may reach over the border. Each cell is tested once, and the walk ends when the best
 //! hit lies before the next slab.
 
-use super::Trunk;
+use super::trunk::Trunk;
 use crate::{
-    cells::{Cell, CellStore},
+    cells::{cell::Cell, store::CellStore},
     scatter::{GREATEST_SIZE, Stem},
 };
 use bevy::math::{DVec2, DVec3, IVec2, Vec3, Vec3Swizzles};

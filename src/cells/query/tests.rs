@@ -1,4 +1,4 @@
-use super::*;
+use super::{trunk::Trunk, *};
 use crate::cells::store::tests::forest;
 use bevy::math::Vec3;
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
@@ -22,7 +22,7 @@ fn on_map(stem: &Stem) -> Vec2 {
 }
 
 #[test]
-fn the_nearest_stem_is_that_of_a_search_of_all() {
+fn the_nearest_stem_equals_a_search_of_all() {
     for (half, most_plants) in [(40, 1), (12, 20), (3, 60)] {
         let store = forest(half, most_plants, 20.0, 6);
         let stems = all(&store);
@@ -46,7 +46,7 @@ fn the_nearest_stem_is_that_of_a_search_of_all() {
 }
 
 #[test]
-fn stems_within_a_radius_are_those_of_a_search_of_all() {
+fn stems_within_a_radius_equal_a_search_of_all() {
     let store = forest(12, 20, 20.0, 7);
     let stems = all(&store);
     let mut random = Xoshiro256PlusPlus::seed_from_u64(7);
@@ -73,7 +73,7 @@ fn cast_slowly(stems: &[(IVec2, usize, Stem)], origin: Vec3, direction: Vec3, lo
 }
 
 #[test]
-fn the_first_trunk_on_a_ray_is_that_of_a_search_of_all() {
+fn the_first_trunk_on_a_ray_equals_a_search_of_all() {
     let store = forest(12, 20, 5.0, 8);
     let stems = all(&store);
     let mut random = Xoshiro256PlusPlus::seed_from_u64(8);
@@ -106,7 +106,7 @@ fn the_first_trunk_on_a_ray_is_that_of_a_search_of_all() {
 }
 
 #[test]
-fn a_trunk_that_reaches_over_the_border_of_its_cell_is_hit_from_the_neighbour() {
+fn a_trunk_on_a_border_is_hit_from_the_neighbouring_cell() {
     let mut store = CellStore::new(64.0).unwrap();
     let mut planted = Vec::new();
     for x in [63.9, 0.1] {
@@ -136,7 +136,7 @@ fn a_trunk_that_reaches_over_the_border_of_its_cell_is_hit_from_the_neighbour() 
 }
 
 #[test]
-fn what_is_no_number_is_harmless() {
+fn values_that_are_no_number_are_harmless() {
     let store = forest(3, 20, 5.0, 9);
     let stems = store.plants();
     for wrong in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {

@@ -1,6 +1,6 @@
 //! A trunk as a ray meets it: a cone that stands upright.
 
-use crate::cells::bounds::bounded;
+use crate::cells::bounds::clamped_length;
 use bevy::math::DVec3;
 
 /// Nothing that grows is larger, m.
@@ -21,12 +21,12 @@ impl Trunk {
     /// Of a tree of a size, relative to a full-grown individual. What is no length is 0, and nothing that grows is larger
     /// than a kilometre.
     pub(super) fn of_size(self, size: f32) -> Self {
-        let length = |length_m: f32| bounded(size * length_m, LARGEST_M);
+        let length = |length_m: f32| clamped_length(size * length_m, LARGEST_M);
         let radius_m = length(self.radius_m);
         Self { radius_m, top_radius_m: length(self.top_radius_m).min(radius_m), height_m: length(self.height_m) }
     }
 
-    /// How far along a ray it is hit first; 0 within. `origin` is told from the trunk's foot, `direction` has length 1.
+    /// How far along a ray it is hit first; 0 within. `origin` is relative to the trunk's foot, `direction` has length 1.
     pub(super) fn hit(self, origin: DVec3, direction: DVec3) -> Option<f64> {
         let [at_side, at_top] = [self.hit_side(origin, direction), self.hit_top(origin, direction)];
         at_side.into_iter().chain(at_top).reduce(f64::min)

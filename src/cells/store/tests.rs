@@ -51,7 +51,7 @@ pub(in crate::cells) fn contents(store: &CellStore) -> Vec<(IVec2, Cell)> {
 }
 
 #[test]
-fn a_cell_knows_what_stands_in_it() {
+fn a_cell_sums_up_its_plants() {
     let cell = cell_of(IVec2::new(3, -2), 500, 10.0, 1);
     let corner_m = DVec2::new(192.0, -128.0);
     let stems: Vec<Stem> = cell.records().iter().map(|&record| Stem::unpack(record, corner_m, CELL_M)).collect();
@@ -66,7 +66,7 @@ fn a_cell_knows_what_stands_in_it() {
 }
 
 #[test]
-fn a_store_gives_back_what_was_put_in_and_forgets_what_is_taken_out() {
+fn cells_are_inserted_and_removed_whole() {
     let mut store = forest(20, 5, 3.0, 2);
     let empty = CellStore::new(CELL_M).unwrap();
     let (plants, bytes) = (store.plants(), store.bytes());
@@ -137,7 +137,7 @@ proptest! {
 }
 
 #[test]
-fn cells_at_the_ends_of_the_numbers_are_harmless() {
+fn cells_with_extreme_indices_are_harmless() {
     let mut store = CellStore::new(CELL_M).unwrap();
     for cell in [IVec2::MIN, IVec2::MAX, IVec2::ZERO] {
         store.insert(cell, cell_of(IVec2::ZERO, 1, 1.0, 0));

@@ -100,7 +100,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_difference_is_that_of_all_cells_one_by_one(these in discs(), those in discs()) {
+        fn the_difference_equals_that_of_single_cells(these in discs(), those in discs()) {
             let bounds = [IVec2::splat(-20), IVec2::new(12, 20)];
             let mut visited = Vec::new();
             visit_difference(&these, &those, 16.0, bounds, |row, first, last| {
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn discs_beyond_all_numbers_are_harmless() {
+    fn discs_beyond_all_cells_are_empty() {
         let bounds = [IVec2::splat(-5), IVec2::splat(5)];
         for centre in [DVec2::splat(1e30), DVec2::new(0.0, -1e300), DVec2::new(-1e300, 0.0)] {
             let mut cells = 0;

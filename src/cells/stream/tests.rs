@@ -1,6 +1,7 @@
 use super::*;
 use crate::cells::store::tests::{CELL_M, cell_of, contents};
 use bevy::math::DVec2;
+use bevy::math::Vec3;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 
@@ -14,8 +15,8 @@ fn stream(settings: StreamSettings) -> CellStream {
     CellStream::new(settings, CELL_M, Some(BOUNDS)).unwrap()
 }
 
-fn at(x_m: f32, z_m: f32) -> Viewpoint {
-    Viewpoint { eye_m: Vec3::new(x_m, 2.0, z_m), forward: Vec3::X }
+fn at(x_m: f32, z_m: f32) -> ViewerPose {
+    ViewerPose { eye_m: Vec3::new(x_m, 2.0, z_m), forward: Vec3::X }
 }
 
 fn planted(cell: IVec2) -> Cell {
@@ -23,8 +24,8 @@ fn planted(cell: IVec2) -> Cell {
 }
 
 /// From a viewer to the nearest point of a cell, m.
-fn distance(cell: IVec2, viewpoint: &Viewpoint) -> f64 {
-    let (place, corner) = (viewpoint.eye_m.xz().as_dvec2(), cell.as_dvec2() * f64::from(CELL_M));
+fn distance(cell: IVec2, viewer: &ViewerPose) -> f64 {
+    let (place, corner) = (viewer.eye_m.xz().as_dvec2(), cell.as_dvec2() * f64::from(CELL_M));
     place.clamp(corner, corner + f64::from(CELL_M)).distance(place)
 }
 
@@ -39,10 +40,10 @@ fn drop_ordered(orders: &Orders, store: &mut CellStore) {
 }
 
 /// Steps until nothing is left to do.
-fn settle(stream: &mut CellStream, viewpoints: &[Viewpoint], store: &mut CellStore) {
+fn settle(stream: &mut CellStream, viewers: &[ViewerPose], store: &mut CellStore) {
     let mut orders = Orders::default();
     for _ in 0..10_000 {
-        stream.step(viewpoints, store, &mut orders);
+        stream.step(viewers, store, &mut orders);
         drop_ordered(&orders, store);
         for cell in &orders.plant {
             stream.deliver(*cell, planted(*cell), store);
@@ -54,9 +55,9 @@ fn settle(stream: &mut CellStream, viewpoints: &[Viewpoint], store: &mut CellSto
     panic!("it never comes to rest");
 }
 
-fn assert_complete(store: &CellStore, viewpoints: &[Viewpoint]) {
+fn assert_complete(store: &CellStore, viewers: &[ViewerPose]) {
     for cell in all_cells() {
-        let nearest_m = viewpoints.iter().map(|viewpoint| distance(cell, viewpoint)).fold(f64::INFINITY, f64::min);
+        let nearest_m = viewers.iter().map(|viewer| distance(cell, viewer)).fold(f64::INFINITY, f64::min);
         assert!(nearest_m > 600.0 || store.contains(cell), "a hole at {cell}, {nearest_m} m away");
         assert!(nearest_m < 800.0 + 32.0 || !store.contains(cell), "{cell} is left {nearest_m} m away");
     }
@@ -74,7 +75,7 @@ fn settings_out_of_range_are_named() {
 }
 
 #[test]
-fn the_nearest_cells_come_first_and_those_in_front_before() {
+fn near_cells_are_ordered_first_and_those_ahead_before_those_behind() {
     let (mut stream, store) = (stream(settings()), CellStore::new(CELL_M).unwrap());
     let mut orders = Orders::default();
     stream.step(&[at(10.0, 10.0)], &store, &mut orders);
@@ -95,64 +96,64 @@ fn the_nearest_cells_come_first_and_those_in_front_before() {
 }
 
 #[test]
-fn orders_are_the_first_of_all_that_wait() {
+fn orders_follow_the_priority_of_all_waiting_cells() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(4);
-    for viewers in [1, 1, 1, 1, 2, 3] {
-        let viewpoints: Vec<Viewpoint> = (0..viewers)
-            .map(|_| Viewpoint {
+    for count in [1, 1, 1, 1, 2, 3] {
+        let viewers: Vec<ViewerPose> = (0..count)
+            .map(|_| ViewerPose {
                 forward: Vec3::new(random.random_range(-1.0..1.0), 0.1, random.random_range(-1.0..1.0)),
                 ..at(random.random_range(-400.0..400.0), random.random_range(-400.0..400.0))
             })
             .collect();
         let settings = StreamSettings { load_m: 1200.0, keep_m: 1400.0, most_ordered: 100_000, ..settings() };
         let (mut stream, store) = (stream(settings), CellStore::new(CELL_M).unwrap());
-        let mut urgency = Urgency::default();
-        urgency.look(&viewpoints, CELL_M);
+        let mut priority = Priority::default();
+        priority.follow(&viewers, CELL_M);
         let (mut orders, mut ordered) = (Orders::default(), Vec::new());
         loop {
-            stream.step(&viewpoints, &store, &mut orders);
+            stream.step(&viewers, &store, &mut orders);
             if orders.plant.is_empty() {
                 break;
             }
-            ordered.extend(orders.plant.iter().map(|cell| (urgency.delay(*cell), *cell)));
+            ordered.extend(orders.plant.iter().map(|cell| (priority.delay(*cell), *cell)));
         }
         assert!(ordered.len() > 1000, "{} cells", ordered.len());
         let late = ordered.windows(2).filter(|two| by_delay(&two[0], &two[1]).is_gt());
-        assert_eq!(late.collect::<Vec<_>>(), Vec::<&[(f32, IVec2)]>::new(), "{viewpoints:?}");
+        assert_eq!(late.collect::<Vec<_>>(), Vec::<&[(f32, IVec2)]>::new(), "{viewers:?}");
     }
 }
 
 #[test]
-fn wherever_viewers_go_nothing_near_is_missing_and_nothing_far_is_left() {
+fn cells_are_complete_wherever_viewers_go() {
     let (mut stream, mut store) = (stream(settings()), CellStore::new(CELL_M).unwrap());
     let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
-    let mut viewpoints = vec![at(0.0, 0.0)];
+    let mut viewers = vec![at(0.0, 0.0)];
     for _ in 0..60 {
         if random.random_bool(0.2) {
             let count = random.random_range(1..4);
-            viewpoints.resize(count, at(0.0, 0.0));
+            viewers.resize(count, at(0.0, 0.0));
         }
-        for viewpoint in &mut viewpoints {
+        for viewer in &mut viewers {
             let leap_m = if random.random_bool(0.2) { 4000.0 } else { 60.0 };
             let step = Vec3::new(random.random_range(-leap_m..leap_m), 0.0, random.random_range(-leap_m..leap_m));
-            viewpoint.eye_m = (viewpoint.eye_m + step).clamp(Vec3::splat(-2900.0), Vec3::splat(2900.0));
+            viewer.eye_m = (viewer.eye_m + step).clamp(Vec3::splat(-2900.0), Vec3::splat(2900.0));
         }
-        settle(&mut stream, &viewpoints, &mut store);
-        assert_complete(&store, &viewpoints);
+        settle(&mut stream, &viewers, &mut store);
+        assert_complete(&store, &viewers);
     }
 }
 
 #[test]
-fn on_the_way_no_cell_within_the_keep_radius_is_dropped_or_planted_twice() {
+fn no_cell_is_dropped_within_the_keep_radius_or_planted_twice() {
     let (mut stream, mut store) = (stream(settings()), CellStore::new(CELL_M).unwrap());
     let mut random = Xoshiro256PlusPlus::seed_from_u64(2);
-    let (mut orders, mut late, mut viewpoint) = (Orders::default(), Vec::new(), at(0.0, 0.0));
+    let (mut orders, mut late, mut viewer) = (Orders::default(), Vec::new(), at(0.0, 0.0));
     for step in 0..3000 {
         let leap_m = if step % 500 == 499 { 2000.0 } else { 25.0 };
         let to = Vec3::new(random.random_range(-leap_m..leap_m), 0.0, random.random_range(-leap_m..leap_m));
-        viewpoint.eye_m = (viewpoint.eye_m + to).clamp(Vec3::splat(-2500.0), Vec3::splat(2500.0));
-        stream.step(&[viewpoint], &store, &mut orders);
-        assert!(orders.drop.iter().all(|cell| distance(*cell, &viewpoint) > 800.0));
+        viewer.eye_m = (viewer.eye_m + to).clamp(Vec3::splat(-2500.0), Vec3::splat(2500.0));
+        stream.step(&[viewer], &store, &mut orders);
+        assert!(orders.drop.iter().all(|cell| distance(*cell, &viewer) > 800.0));
         assert!(orders.plant.iter().all(|cell| !store.contains(*cell) && !late.contains(cell)));
         drop_ordered(&orders, &mut store);
         late.extend(&orders.plant);
@@ -169,12 +170,12 @@ fn on_the_way_no_cell_within_the_keep_radius_is_dropped_or_planted_twice() {
     for cell in late {
         stream.deliver(cell, planted(cell), &mut store);
     }
-    settle(&mut stream, &[viewpoint], &mut store);
-    assert_complete(&store, &[viewpoint]);
+    settle(&mut stream, &[viewer], &mut store);
+    assert_complete(&store, &[viewer]);
 }
 
 #[test]
-fn going_to_and_fro_between_the_radii_plants_nothing() {
+fn moves_between_the_radii_order_nothing() {
     let (mut stream, mut store) = (stream(settings()), CellStore::new(CELL_M).unwrap());
     let mut orders = Orders::default();
     settle(&mut stream, &[at(0.0, 0.0)], &mut store);
@@ -187,14 +188,14 @@ fn going_to_and_fro_between_the_radii_plants_nothing() {
 
 proptest! {
     #[test]
-    fn deliveries_in_any_order_make_the_same_forest(seed in 0..1000_u64) {
+    fn the_order_of_deliveries_does_not_show(seed in 0..1000_u64) {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-        let viewpoints = [at(random.random_range(-999.0..999.0), 0.0), at(0.0, random.random_range(-999.0..999.0))];
+        let viewers = [at(random.random_range(-999.0..999.0), 0.0), at(0.0, random.random_range(-999.0..999.0))];
         let (mut in_order, mut stream) = (stream(settings()), stream(settings()));
         let mut store = CellStore::new(CELL_M).unwrap();
         let (mut orders, mut open) = (Orders::default(), Vec::new());
         loop {
-            stream.step(&viewpoints, &store, &mut orders);
+            stream.step(&viewers, &store, &mut orders);
             open.extend_from_slice(&orders.plant);
             if open.is_empty() {
                 break;
@@ -203,22 +204,22 @@ proptest! {
             prop_assert!(stream.deliver(cell, planted(cell), &mut store));
         }
         let mut sorted = CellStore::new(CELL_M).unwrap();
-        settle(&mut in_order, &viewpoints, &mut sorted);
+        settle(&mut in_order, &viewers, &mut sorted);
         prop_assert_eq!(contents(&store), contents(&sorted));
     }
 }
 
 #[test]
-fn ten_thousand_random_moves_leave_memory_flat() {
+fn memory_stays_flat_over_ten_thousand_moves() {
     let (mut stream, mut store) = (stream(settings()), CellStore::new(CELL_M).unwrap());
     let mut random = Xoshiro256PlusPlus::seed_from_u64(3);
-    let (mut orders, mut viewpoint) = (Orders::default(), at(0.0, 0.0));
+    let (mut orders, mut viewer) = (Orders::default(), at(0.0, 0.0));
     let mut most = [[0; 4]; 2];
     for step in 0..10_000 {
         let leap_m = if random.random_bool(0.01) { 5000.0 } else { 30.0 };
         let to = Vec3::new(random.random_range(-leap_m..leap_m), 0.0, random.random_range(-leap_m..leap_m));
-        viewpoint.eye_m = (viewpoint.eye_m + to).clamp(Vec3::splat(-2500.0), Vec3::splat(2500.0));
-        stream.step(&[viewpoint], &store, &mut orders);
+        viewer.eye_m = (viewer.eye_m + to).clamp(Vec3::splat(-2500.0), Vec3::splat(2500.0));
+        stream.step(&[viewer], &store, &mut orders);
         drop_ordered(&orders, &mut store);
         for cell in &orders.plant {
             stream.deliver(*cell, planted(*cell), &mut store);
@@ -235,7 +236,7 @@ fn ten_thousand_random_moves_leave_memory_flat() {
 }
 
 #[test]
-fn a_store_with_cells_from_before_is_taken_over() {
+fn cells_that_are_there_before_are_kept_or_dropped() {
     let (mut stream, mut store) = (stream(settings()), CellStore::new(CELL_M).unwrap());
     for cell in all_cells() {
         store.insert(cell, Cell::pack(&[], DVec2::ZERO, CELL_M));
@@ -245,13 +246,13 @@ fn a_store_with_cells_from_before_is_taken_over() {
 }
 
 #[test]
-fn what_is_no_number_is_harmless() {
+fn values_that_are_no_number_are_harmless() {
     let (mut stream, mut store) = (stream(settings()), CellStore::new(CELL_M).unwrap());
     settle(&mut stream, &[at(0.0, 0.0)], &mut store);
     let cells = store.len();
     for wrong in [f32::NAN, f32::INFINITY] {
         settle(&mut stream, &[at(wrong, 0.0)], &mut store);
-        settle(&mut stream, &[Viewpoint { forward: Vec3::splat(wrong), ..at(0.0, 0.0) }], &mut store);
+        settle(&mut stream, &[ViewerPose { forward: Vec3::splat(wrong), ..at(0.0, 0.0) }], &mut store);
         settle(&mut stream, &[], &mut store);
         assert_eq!(store.len(), cells);
     }

@@ -37,7 +37,7 @@ fn errors(basis: &LoadBasis, winds: &[Vec3], load: fn(Vec3, Vec3) -> Vec3) -> Ve
 }
 
 #[test]
-fn four_principal_signals_beat_three_orthogonal_beams() {
+fn principal_signals_have_a_smaller_error_than_orthogonal_beams() {
     let winds = gusts(2000, 1);
     let unseen = gusts(2000, 2);
     let median = |kind| errors(&LoadBasis::new(kind, &winds, quadratic_drag), &unseen, quadratic_drag)[48];
@@ -90,7 +90,7 @@ fn signals_have_no_mean_and_unit_variance() {
 }
 
 #[test]
-fn calm_and_nonsense_give_no_load() {
+fn calm_and_nan_winds_give_no_load() {
     for winds in [&[][..], &[Vec3::ZERO; 10][..], &[Vec3::NAN; 3][..]] {
         for kind in [LoadBasisKind::Principal, LoadBasisKind::OrthogonalBeams { halved: true }] {
             let basis = LoadBasis::new(kind, winds, quadratic_drag);
@@ -101,14 +101,14 @@ fn calm_and_nonsense_give_no_load() {
 }
 
 #[test]
-fn steady_wind_bends_and_does_not_move() {
+fn steady_wind_has_a_mean_load_and_no_signal() {
     let basis = LoadBasis::new(LoadBasisKind::Principal, &[Vec3::new(5.0, 0.0, 0.0); 100], quadratic_drag);
     let coefficients = basis.coefficients(Vec3::Y);
     assert!((coefficients.load(basis.signals(Vec3::X * 5.0)) - Vec3::X * 25.0).length() < 1e-4);
 }
 
 #[test]
-fn same_wind_same_basis() {
+fn basis_depends_on_the_wind_alone() {
     let build = || LoadBasis::new(LoadBasisKind::Principal, &gusts(3000, 7), quadratic_drag);
     assert_eq!(build().map(), build().map());
 }

@@ -1,7 +1,6 @@
-use super::super::cantilever::CantileverMode;
-use super::super::direction_map::LoadCoefficients;
+use super::super::{direction_map::LoadCoefficients, oracle::cantilever::CantileverMode};
 use super::*;
-use bevy::math::DVec3;
+use bevy::math::{DVec3, Mat3};
 
 const BEAM: BeamDynamics = BeamDynamics {
     base: Vec3::new(0.5, 1.0, -2.0),
@@ -45,7 +44,7 @@ fn steady_map(pressure: f32) -> DirectionMap {
 }
 
 fn posed(beams: &[BeamDynamics], pressure: f32) -> Vec<BeamPose> {
-    let poser = TreePoser::new(beams, &steady_map(pressure), &FrequencyClasses::default(), Quat::IDENTITY, 1.0);
+    let poser = TreePoser::new(beams, &steady_map(pressure), &FrequencyClasses::default(), Mat3::IDENTITY, 1.0);
     let mut poses = vec![BeamPose::REST; beams.len()];
     poser.pose(&[Vec4::ZERO; 23], &mut poses);
     poses
@@ -62,7 +61,7 @@ fn exact_slope(s: f64) -> f64 {
 }
 
 #[test]
-fn polynomials_are_the_papers_mode() {
+fn polynomials_match_the_exact_mode() {
     assert!((f64::from(SLOPE_TIP) - CantileverMode::nth(1).slope(1.0)).abs() < 1e-6);
     // What each integral is multiplied by at the greatest angle, in the direction of a bend.
     let t = f64::from(TIP_ANGLE_LIMIT).powi(2);
@@ -84,7 +83,7 @@ fn polynomials_are_the_papers_mode() {
 }
 
 #[test]
-fn calm_is_the_rest_pose_exactly() {
+fn pose_in_a_calm_is_exactly_the_rest_pose() {
     let beams = hierarchy();
     for (pose, beam) in posed(&beams, 0.0).iter().zip(&beams) {
         assert_eq!(*pose, BeamPose::REST);
@@ -121,16 +120,16 @@ fn deflection_grows_with_the_wind_and_saturates() {
 }
 
 #[test]
-fn children_stay_on_their_parents() {
+fn children_stay_attached_to_their_parents() {
     let beams = hierarchy();
     for pressure in [10.0, 300.0, 1e5] {
         let poses = posed(&beams, pressure);
         for child in 1..3 {
             let (root, _) = poses[child].carry(&beams[child], 0.0, beams[child].base);
             let parent = child - 1;
-            let (seat, turn) = poses[parent].carry(&beams[parent], beams[child].attach, beams[child].base);
+            let (attachment, turn) = poses[parent].carry(&beams[parent], beams[child].attach, beams[child].base);
             // Rounding of coordinates of some 6 m.
-            assert!(root.distance(seat) < 1e-5, "{root} is off {seat}");
+            assert!(root.distance(attachment) < 1e-5, "{root} is off {attachment}");
             assert!(poses[child].rotation.angle_between(turn) < 1e-3);
         }
     }
@@ -155,7 +154,7 @@ fn slow_carry(beams: &[BeamDynamics], tip_angles: &[Vec3], index: usize, s: f32,
 }
 
 #[test]
-fn poses_are_those_of_the_slow_recursion() {
+fn poses_match_the_slow_recursion() {
     let beams = hierarchy();
     for pressure in [5.0, 100.0, 1e6] {
         let poses = posed(&beams, pressure);
@@ -172,7 +171,7 @@ fn poses_are_those_of_the_slow_recursion() {
 }
 
 #[test]
-fn trees_turn_with_their_coordinates() {
+fn pose_turns_with_the_coordinates() {
     let turn = Quat::from_rotation_y(0.7);
     let turned = BeamDynamics { base: turn * BEAM.base, direction: turn * BEAM.direction, ..BEAM };
     let classes = FrequencyClasses::default();
@@ -180,26 +179,26 @@ fn trees_turn_with_their_coordinates() {
     let mut here = [BeamPose::REST];
     let mut there = [BeamPose::REST];
     let responses = [Vec4::new(3.0, -2.0, 5.0, 0.0); 23];
-    TreePoser::new(&[turned], &map, &classes, Quat::IDENTITY, 1.0).pose(&responses, &mut here);
-    TreePoser::new(&[BEAM], &map, &classes, turn, 1.0).pose(&responses, &mut there);
+    TreePoser::new(&[turned], &map, &classes, Mat3::IDENTITY, 1.0).pose(&responses, &mut here);
+    TreePoser::new(&[BEAM], &map, &classes, Mat3::from_quat(turn), 1.0).pose(&responses, &mut there);
     let difference = here[0].tip_angle - Vec3A::from(turn * Vec3::from(there[0].tip_angle));
     assert!(difference.length() < 1e-6);
 }
 
 #[test]
-fn larger_instances_read_slower_classes() {
+fn larger_instances_use_slower_classes() {
     let classes = FrequencyClasses::default();
     let mut responses = [Vec4::ZERO; 23];
     // A tree 1.22^2 times as large sways two classes below its own.
     responses[5] = Vec4::new(10.0, 0.0, 0.0, 0.0);
     let mut poses = [BeamPose::REST];
-    let poser = TreePoser::new(&[BEAM], &steady_map(0.0), &classes, Quat::IDENTITY, 1.22 * 1.22);
+    let poser = TreePoser::new(&[BEAM], &steady_map(0.0), &classes, Mat3::IDENTITY, 1.22 * 1.22);
     poser.pose(&responses, &mut poses);
     assert!(poses[0].tip_angle.length() > 0.01);
 }
 
 #[test]
-fn nonsense_is_posed_without_nan() {
+fn poses_are_finite_for_any_input() {
     let mut beams = hierarchy();
     beams[0].parent = 2;
     beams[1].gain = f32::NAN;
@@ -209,7 +208,7 @@ fn nonsense_is_posed_without_nan() {
         assert!(pose.tip_angle.is_finite() && pose.rotation.is_finite() && pose.translation.is_finite());
         assert!(pose.tip_angle.length() <= TIP_ANGLE_LIMIT * 1.001);
     }
-    let poser = TreePoser::new(&beams, &steady_map(1.0), &FrequencyClasses::default(), Quat::IDENTITY, f32::NAN);
+    let poser = TreePoser::new(&beams, &steady_map(1.0), &FrequencyClasses::default(), Mat3::IDENTITY, f32::NAN);
     poser.pose(&[], &mut [BeamPose::REST; 1]);
     assert_eq!((poser.len(), TreePoser::default().is_empty()), (3, true));
 }

@@ -1,4 +1,4 @@
-//! Tests by chi-square: is a pattern random, and does a law describe it?
+//! Chi-square tests: whether a pattern is random, and whether a law describes it.
 //!
 //! The chi-square distribution is the incomplete gamma function of `puruspe`, which depends on nothing; `statrs` has the
 //! same and far more beside it. Below the mean it is summed here, because `puruspe` 0.4.4 gives NaN there from 200 degrees
@@ -128,13 +128,13 @@ fn chi_square_quantile(above: f64, degrees_of_freedom: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{law::CountModel, real_patterns};
     use super::*;
-    use crate::scatter::counts::{CountModel, frequencies::real};
     use approx::assert_relative_eq;
     use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
 
     #[test]
-    fn chi_square_has_its_tabled_values_and_the_closed_form_of_even_degrees() {
+    fn chi_square_matches_tables_and_the_closed_form_of_even_degrees() {
         // The 5% point of 1 degree and the 1% point of 3, from any table.
         assert_relative_eq!(chi_square_above(3.841_458_8, 1.0), 0.05, epsilon = 1e-8);
         assert_relative_eq!(chi_square_above(11.344_866_7, 3.0), 0.01, epsilon = 1e-8);
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn no_index_is_without_a_probability() {
+    fn every_index_has_a_probability() {
         for degrees_of_freedom in [1.0, 99.0, 199.0, 200.0, 2499.0, 1e6] {
             let above = |index: u32| chi_square_above(f64::from(index) / 50.0 * degrees_of_freedom, degrees_of_freedom);
             let all: Vec<f64> = (0..200).map(above).collect();
@@ -164,9 +164,10 @@ mod tests {
     }
 
     #[test]
-    fn random_patterns_have_the_tabled_range_and_that_of_the_normal_law_with_many_quadrats() {
+    fn range_of_random_patterns_matches_tables_and_the_normal_law() {
         let range = |degrees_of_freedom: f64| {
-            let dispersion = Dispersion { degrees_of_freedom, ..dispersion(&real::table(&real::PINES)) };
+            let dispersion =
+                Dispersion { degrees_of_freedom, ..dispersion(&real_patterns::table(&real_patterns::PINES)) };
             dispersion.range_if_random(0.95)
         };
         let [low, high] = range(10.0);
@@ -181,19 +182,19 @@ mod tests {
     }
 
     #[test]
-    fn the_spruces_are_regular_the_redwoods_clustered_and_the_pines_random() {
-        let spruces = dispersion(&real::table(&real::SPRUCES));
+    fn spruces_are_regular_redwoods_clustered_and_pines_random() {
+        let spruces = dispersion(&real_patterns::table(&real_patterns::SPRUCES));
         assert!(spruces.index < 0.7 && spruces.p_regular < 1e-3, "{spruces:?}");
-        let redwoods = dispersion(&real::table(&real::REDWOODS));
+        let redwoods = dispersion(&real_patterns::table(&real_patterns::REDWOODS));
         assert!(redwoods.index > 1.8 && redwoods.p_clustered < 1e-6, "{redwoods:?}");
-        let pines = dispersion(&real::table(&real::PINES));
+        let pines = dispersion(&real_patterns::table(&real_patterns::PINES));
         assert!(pines.p_regular > 0.05 && pines.p_clustered > 0.05, "{pines:?}");
     }
 
     #[test]
-    fn classes_keep_every_quadrat_and_expect_enough() {
+    fn pooled_classes_hold_every_quadrat_and_expect_at_least_five() {
         let law = CountModel::NegativeBinomial { k: 0.9 }.with_mean(1.0).unwrap();
-        let classes = pooled_classes(&law, &real::table(&real::REDWOODS));
+        let classes = pooled_classes(&law, &real_patterns::table(&real_patterns::REDWOODS));
         assert_relative_eq!(classes.iter().map(|class| class.0).sum::<f64>(), 196.0);
         assert_relative_eq!(classes.iter().map(|class| class.1).sum::<f64>(), 196.0, max_relative = 1e-9);
         assert!(classes.iter().all(|class| class.1 >= LEAST_EXPECTED), "{classes:?}");
@@ -201,7 +202,7 @@ mod tests {
 
     /// Of patterns drawn from a law one in a hundred differs from it at the level of 1%; from another law nearly all do.
     #[test]
-    fn the_right_law_is_rarely_rejected_and_a_wrong_one_mostly() {
+    fn the_right_law_is_rarely_rejected_and_a_wrong_one_always() {
         const PATTERNS: u32 = 400;
         let law = CountModel::NegativeBinomial { k: 1.0 }.with_mean(1.0).unwrap();
         let wrong = CountModel::Poisson.with_mean(1.0).unwrap();

@@ -1,12 +1,12 @@
-//! Which law describes a real pattern: every law at its most probable, ranked by Akaike's criterion.
+//! The law that describes a real pattern: each law is fitted by maximum likelihood, and all are ranked by Akaike's criterion.
 
 use super::{
     dispersion::{GoodnessOfFit, goodness_of_fit},
     frequencies::Frequencies,
-    law::{CountKind, CountLaw},
+    law::{CountKind, CountLaw, CountModel},
     likelihood::{by_likelihood, log_likelihood},
 };
-use crate::scatter::error::ScatterError;
+use crate::setting::SettingError;
 
 /// A law with estimated parameters, and how well it does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,10 +38,9 @@ impl Fit {
 /// (clustered ones for a regular pattern, and the reverse) are left out.
 ///
 /// # Errors
-/// [`ScatterError::OutOfRange`] where the quadrats hold more plants on average than
-/// [`GREATEST_MEAN`](super::GREATEST_MEAN): choose smaller ones.
-pub fn characterise(table: &Frequencies) -> Result<Vec<Fit>, ScatterError> {
-    super::law::CountModel::Poisson.with_mean(table.mean())?;
+/// [`SettingError`] where the quadrats hold more than 500 plants on average: choose smaller ones.
+pub fn characterise(table: &Frequencies) -> Result<Vec<Fit>, SettingError> {
+    CountModel::Poisson.with_mean(table.mean())?;
     let mut fits: Vec<Fit> = CountKind::ALL
         .into_iter()
         .filter_map(|kind| by_likelihood(kind, table))
@@ -54,18 +53,18 @@ pub fn characterise(table: &Frequencies) -> Result<Vec<Fit>, ScatterError> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::real_patterns;
     use super::*;
-    use crate::scatter::counts::frequencies::real;
 
     #[test]
-    fn real_patterns_get_their_law() {
+    fn real_patterns_have_the_expected_law() {
         for (table, kind) in [
-            (&real::PINES[..], CountKind::Poisson),
-            (&real::SPRUCES, CountKind::Binomial),
-            (&real::REDWOODS, CountKind::NegativeBinomial),
-            (&real::LANSING, CountKind::Poisson),
+            (&real_patterns::PINES[..], CountKind::Poisson),
+            (&real_patterns::SPRUCES, CountKind::Binomial),
+            (&real_patterns::REDWOODS, CountKind::NegativeBinomial),
+            (&real_patterns::LANSING, CountKind::Poisson),
         ] {
-            let fits = characterise(&real::table(table)).unwrap();
+            let fits = characterise(&real_patterns::table(table)).unwrap();
             assert_eq!(fits[0].law.model().kind(), kind, "{fits:#?}");
             assert!(fits.is_sorted_by(|a, b| a.aic <= b.aic));
         }

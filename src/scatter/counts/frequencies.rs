@@ -1,6 +1,6 @@
 //! The observed table: how many quadrats hold 0, 1, 2, ... plants.
 
-use crate::scatter::error::ScatterError;
+use crate::setting::SettingError;
 
 /// More plants than this in one quadrat call for smaller quadrats: the laws' tables grow with the square of it.
 const GREATEST_COUNT: usize = 1000;
@@ -15,21 +15,21 @@ impl Frequencies {
     /// From a table whose entry r is the number of quadrats that hold r plants.
     ///
     /// # Errors
-    /// [`ScatterError::OutOfRange`] with fewer than two quadrats, for which there is no variance, or without a plant.
-    pub fn new(mut quadrats_with: Vec<u64>) -> Result<Self, ScatterError> {
+    /// [`SettingError`] with fewer than two quadrats, for which there is no variance, or without a plant.
+    pub fn new(mut quadrats_with: Vec<u64>) -> Result<Self, SettingError> {
         while quadrats_with.last() == Some(&0) {
             quadrats_with.pop();
         }
         let quadrats = quadrats_with.iter().fold(0_u64, |sum, &quadrats| sum.saturating_add(quadrats));
         if !(2..=1 << 40).contains(&quadrats) {
-            return Err(ScatterError::out_of_range("quadrats", quadrats, "2 to 2^40"));
+            return Err(SettingError::new("quadrats", quadrats, "2 to 2^40"));
         }
         if quadrats_with.len() < 2 {
-            return Err(ScatterError::out_of_range("plants", 0, "at least 1"));
+            return Err(SettingError::new("plants", 0, "at least 1"));
         }
         if quadrats_with.len() > GREATEST_COUNT + 1 {
             let count = quadrats_with.len() - 1;
-            return Err(ScatterError::out_of_range("plants in one quadrat", count, format!("0 to {GREATEST_COUNT}")));
+            return Err(SettingError::new("plants in one quadrat", count, format!("0 to {GREATEST_COUNT}")));
         }
         Ok(Self { quadrats_with })
     }
@@ -38,14 +38,10 @@ impl Frequencies {
     ///
     /// # Errors
     /// As [`Frequencies::new`].
-    pub fn of_counts(counts: &[u32]) -> Result<Self, ScatterError> {
+    pub fn of_counts(counts: &[u32]) -> Result<Self, SettingError> {
         let greatest = counts.iter().copied().max().unwrap_or(0) as usize;
         if greatest > GREATEST_COUNT {
-            return Err(ScatterError::out_of_range(
-                "plants in one quadrat",
-                greatest,
-                format!("0 to {GREATEST_COUNT}"),
-            ));
+            return Err(SettingError::new("plants in one quadrat", greatest, format!("0 to {GREATEST_COUNT}")));
         }
         let mut quadrats_with = vec![0; greatest + 1];
         for &count in counts {
@@ -81,7 +77,7 @@ impl Frequencies {
     }
 
     /// Third central moment of the number of plants in a quadrat.
-    pub fn third_moment(&self) -> f64 {
+    pub(super) fn third_moment(&self) -> f64 {
         let mean = self.mean();
         self.sum(|count| (count - mean).powi(3)) / self.quadrats()
     }
@@ -89,25 +85,6 @@ impl Frequencies {
     fn sum(&self, of: impl Fn(f64) -> f64) -> f64 {
         self.quadrats_with.iter().enumerate().map(|(count, &quadrats)| quadrats as f64 * of(count as f64)).sum()
     }
-}
-
-/// Real counts of trees (facts; see the notes of each), with the model that describes them best.
-#[cfg(test)]
-pub(super) mod real {
-    use super::Frequencies;
-
-    pub fn table(quadrats_with: &[u64]) -> Frequencies {
-        Frequencies::new(quadrats_with.to_vec()).unwrap()
-    }
-
-    /// 65 Japanese black pine saplings, 8 x 8 quadrats.
-    pub const PINES: [u64; 5] = [22, 26, 10, 5, 1];
-    /// 134 Norway spruces, 14 x 10 quadrats.
-    pub const SPRUCES: [u64; 5] = [38, 74, 26, 0, 2];
-    /// 195 Californian redwood seedlings, 14 x 14 quadrats.
-    pub const REDWOODS: [u64; 10] = [101, 44, 27, 12, 5, 4, 2, 0, 0, 1];
-    /// 2251 trees of Lansing Woods, 47 x 48 quadrats.
-    pub const LANSING: [u64; 7] = [824, 826, 447, 117, 33, 6, 3];
 }
 
 #[cfg(test)]

@@ -1,16 +1,16 @@
 //! The six laws of the number of plants in a quadrat, by their parameters.
 //!
-//! A [`CountModel`] says how plants keep together or apart; with a mean it becomes a [`CountLaw`], whose parameters are
-//! the literature's. The paper prints the mean as Q/N with "Q the number of quadrats and N the number of points"
+//! A [`CountModel`] says how plants cluster or keep apart. With a mean it is a [`CountLaw`], whose parameters are those of
+//! the literature. The paper prints the mean as Q/N with "Q the number of quadrats and N the number of points"
 //! (equations 6 to 8); it is N/Q.
 
 use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
 
-use crate::scatter::error::{ScatterError, require};
+use crate::setting::{SettingError, require};
 
 /// The greatest mean number of plants in a quadrat: beyond it e^-mean, from which the recursions start, loses digits.
-pub const GREATEST_MEAN: f64 = 500.0;
+pub(in crate::scatter) const GREATEST_MEAN: f64 = 500.0;
 /// The least mean: one plant in a million quadrats.
 const LEAST_MEAN: f64 = 1e-6;
 /// Limits of clump sizes and ratios, so that a table of probabilities stays within some thousands of entries.
@@ -19,7 +19,7 @@ const GREATEST_TRIALS: u32 = 1000;
 const LEAST_SHAPE: f64 = 1e-3;
 const GREATEST_SHAPE: f64 = 1e6;
 
-/// How plants keep together or apart, whatever their density.
+/// How plants cluster or keep apart, at any density.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect, Serialize, Deserialize)]
 pub enum CountModel {
     /// Random: each plant falls anywhere, without regard to the others.
@@ -92,7 +92,7 @@ impl CountKind {
     }
 
     /// Number of parameters that an estimate has to find.
-    pub fn parameters(self) -> u32 {
+    pub(super) fn parameters(self) -> u32 {
         match self {
             Self::Poisson => 1,
             Self::Binomial | Self::NegativeBinomial | Self::PoissonPoisson => 2,
@@ -112,18 +112,18 @@ impl CountModel {
     /// The law of this model with `mean` plants in a quadrat.
     ///
     /// # Errors
-    /// [`ScatterError::OutOfRange`] where a parameter is outside its domain, or a binomial's quadrat has fewer places
+    /// [`SettingError`] where a parameter is outside its domain, or a binomial's quadrat has fewer places
     /// than plants.
-    pub fn with_mean(self, mean: f64) -> Result<CountLaw, ScatterError> {
+    pub fn with_mean(self, mean: f64) -> Result<CountLaw, SettingError> {
         require("mean_per_quadrat", mean, LEAST_MEAN..=GREATEST_MEAN)?;
         self.validate()?;
         match self {
             Self::Binomial { n } if mean > f64::from(n) => {
-                Err(ScatterError::out_of_range("n", n, format!("at least the mean per quadrat, {mean}")))
+                Err(SettingError::new("n", n, format!("at least the mean per quadrat, {mean}")))
             }
             Self::NegativeBinomial { k } if mean / k > GREATEST_RATIO => {
                 let least = mean / GREATEST_RATIO;
-                Err(ScatterError::out_of_range("k", k, format!("at least {least} with {mean} plants in a quadrat")))
+                Err(SettingError::new("k", k, format!("at least {least} with {mean} plants in a quadrat")))
             }
             _ => Ok(CountLaw { model: self, mean }),
         }
@@ -132,8 +132,8 @@ impl CountModel {
     /// Checks the parameters that do not depend on the mean.
     ///
     /// # Errors
-    /// [`ScatterError::OutOfRange`] for the first that is outside its domain.
-    pub fn validate(self) -> Result<(), ScatterError> {
+    /// [`SettingError`] for the first that is outside its domain.
+    pub fn validate(self) -> Result<(), SettingError> {
         let probability = f64::MIN_POSITIVE..=1.0;
         match self {
             Self::Poisson => Ok(()),
@@ -168,7 +168,7 @@ impl CountModel {
 }
 
 impl CountLaw {
-    /// How the plants keep together or apart.
+    /// How the plants cluster or keep apart.
     pub fn model(&self) -> CountModel {
         self.model
     }

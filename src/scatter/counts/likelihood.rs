@@ -24,7 +24,7 @@ const SHAPE: (f64, f64) = (1e-2, 100.0);
 const RATIO: (f64, f64) = (1e-4, 99.0);
 
 /// Natural logarithm of the probability of the observed table, without the multinomial factor that all laws share.
-pub fn log_likelihood(law: &CountLaw, table: &Frequencies) -> f64 {
+pub(super) fn log_likelihood(law: &CountLaw, table: &Frequencies) -> f64 {
     let probabilities = Probabilities::first(law, table.greatest() + 1);
     let of_class = |(&quadrats, probability): (&u64, &f64)| {
         if quadrats == 0 { 0.0 } else { quadrats as f64 * probability.ln() }
@@ -32,7 +32,7 @@ pub fn log_likelihood(law: &CountLaw, table: &Frequencies) -> f64 {
     table.quadrats_with().iter().zip(&probabilities).map(of_class).sum()
 }
 
-/// The law of a kind under which a real pattern is most probable. `None` where the likelihood has no top: a regular
+/// The law of a kind under which a real pattern is most probable. `None` where the likelihood has no maximum: a regular
 /// pattern has no best clustered law, nor a clustered one a best regular law.
 ///
 /// The compound laws are searched with some thousands of tables, each of as many steps as the square of the greatest
@@ -40,12 +40,12 @@ pub fn log_likelihood(law: &CountLaw, table: &Frequencies) -> f64 {
 pub fn by_likelihood(kind: CountKind, table: &Frequencies) -> Option<CountLaw> {
     let quadrats = table.quadrats();
     let (mean, variance) = (table.mean(), table.variance() * (quadrats - 1.0) / quadrats);
-    let has_top = match kind {
+    let has_maximum = match kind {
         CountKind::Poisson => true,
         CountKind::Binomial => variance < mean,
         _ => variance > mean,
     };
-    if !has_top {
+    if !has_maximum {
         return None;
     }
     let likelihood =
@@ -118,14 +118,14 @@ fn negative_binomial_shape(table: &Frequencies) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::real_patterns;
     use super::*;
-    use crate::scatter::counts::frequencies::real;
     use approx::assert_relative_eq;
     use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
 
     #[test]
-    fn the_redwoods_have_their_known_negative_binomial() {
-        let law = by_likelihood(CountKind::NegativeBinomial, &real::table(&real::REDWOODS)).unwrap();
+    fn redwoods_have_the_published_negative_binomial() {
+        let law = by_likelihood(CountKind::NegativeBinomial, &real_patterns::table(&real_patterns::REDWOODS)).unwrap();
         let CountModel::NegativeBinomial { k } = law.model() else { panic!("asked for a negative binomial") };
         assert_relative_eq!(k, 0.907, epsilon = 5e-4);
         assert_relative_eq!(law.mean() / k, 1.097, epsilon = 5e-4);
@@ -133,8 +133,8 @@ mod tests {
 
     /// Every parameter pushed to either side, the mean among them, makes the table less probable.
     #[test]
-    fn estimates_are_at_the_top_of_the_likelihood() {
-        let table = real::table(&real::REDWOODS);
+    fn estimates_maximise_the_likelihood() {
+        let table = real_patterns::table(&real_patterns::REDWOODS);
         for kind in CountKind::ALL {
             let Some(law) = by_likelihood(kind, &table) else { continue };
             let top = log_likelihood(&law, &table);

@@ -49,8 +49,8 @@ pub fn by_moments(kind: CountKind, table: &Frequencies) -> Option<CountLaw> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{probability::Probabilities, real_patterns};
     use super::*;
-    use crate::scatter::counts::{Probabilities, frequencies::real};
     use approx::assert_relative_eq;
 
     /// A sample so large that its moments are the law's.
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn every_law_is_found_again_in_its_own_moments() {
+    fn laws_are_recovered_from_their_moments() {
         for model in [
             CountModel::Poisson,
             CountModel::Binomial { n: 7 },
@@ -91,7 +91,8 @@ mod tests {
 
     #[test]
     fn a_regular_pattern_has_no_clustered_law_and_the_reverse() {
-        let (regular, clustered) = (real::table(&real::SPRUCES), real::table(&real::REDWOODS));
+        let (regular, clustered) =
+            (real_patterns::table(&real_patterns::SPRUCES), real_patterns::table(&real_patterns::REDWOODS));
         assert!(by_moments(CountKind::Binomial, &clustered).is_none());
         for kind in &CountKind::ALL[2..] {
             assert!(by_moments(*kind, &regular).is_none(), "{kind:?}");

@@ -15,8 +15,8 @@
 //! - binomial clumps: g(0) = q^n, h(t) = n p C(n-1,t) p^t q^(n-1-t).
 //! - negative binomial clumps: g(0) = (1+p)^-k, h(t) = k p (1+p)^(-k-1) C(k+t,t) (p/(1+p))^t.
 //!
-//! In each case h is the clump's mean times the same law with one plant more in mind: Poisson, binomial of n-1 places,
-//! negative binomial of k+1; so that one set of recursions serves all six.
+//! In each case h is the clump's mean times a law of the same kind: Poisson, binomial of n-1 places, negative binomial of
+//! k+1. So one set of recursions serves all six.
 
 use rand::{Rng, RngExt};
 
@@ -127,7 +127,7 @@ fn negative_binomial(k: f64, p: f64, entries: usize) -> Vec<f64> {
     recursion((-k * p.ln_1p()).exp(), entries, |count| (k + count - 1.0) / count * share)
 }
 
-/// The law of a Poisson number of clumps; `one_more` is h over the mean of a clump, and as long as the answer.
+/// The law of a Poisson number of clumps; `one_more` is h over the mean of a clump, and as long as the result.
 fn compound(mean: f64, clump: f64, empty_clump: f64, one_more: &[f64]) -> Vec<f64> {
     let clumps = mean / clump;
     let mut of = Vec::with_capacity(one_more.len());
@@ -141,8 +141,8 @@ fn compound(mean: f64, clump: f64, empty_clump: f64, one_more: &[f64]) -> Vec<f6
 
 #[cfg(test)]
 mod tests {
+    use super::super::law::GREATEST_MEAN;
     use super::*;
-    use crate::scatter::counts::GREATEST_MEAN;
     use approx::assert_relative_eq;
     use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
     use rustfft::{FftPlanner, num_complex::Complex};
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn the_most_uneven_laws_within_the_limits_fit_their_table() {
+    fn tables_of_the_most_uneven_laws_are_complete() {
         for model in [
             CountModel::NegativeBinomial { k: 5.0 },
             CountModel::PoissonPoisson { clump: 100.0 },

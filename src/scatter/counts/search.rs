@@ -5,7 +5,7 @@ const STEPS: usize = 32;
 /// The golden section shrinks the bracket by 0.618 each time: 2e-9 of it remains.
 const REFINEMENTS: usize = 42;
 
-/// Where `of` is greatest between `lowest` and `highest`, both above 0: a scan in equal ratios finds the hill, the golden
+/// Where `of` is greatest between `lowest` and `highest`, both above 0: a scan in equal ratios finds the peak, the golden
 /// section its top. Values that are no number count as lowest.
 pub(super) fn maximise(lowest: f64, highest: f64, of: impl Fn(f64) -> f64) -> f64 {
     let of = |place: f64| {
@@ -52,7 +52,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     #[test]
-    fn the_higher_of_two_hills_is_found_and_a_top_at_the_end_too() {
+    fn the_higher_of_two_maxima_is_found_also_at_an_end() {
         let hills = |x: f64| (-(x.ln() - 1.0).powi(2)).exp() + 1.5 * (-(x.ln() + 2.0).powi(2)).exp();
         assert_relative_eq!(maximise(1e-3, 1e3, hills), (-2.0_f64).exp(), max_relative = 1e-3);
         assert_relative_eq!(maximise(0.5, 20.0, |x| x), 20.0, max_relative = 1e-6);

@@ -1,19 +1,26 @@
 //! The plan of a forest and its areas.
 
 use bevy::{asset::Asset, reflect::Reflect};
-use ron::{Options, extensions::Extensions};
 use serde::{Deserialize, Serialize};
 
-use super::{GroundLimits, KeepOut, Shape, Stock};
-use crate::scatter::{
-    counts::{CountLaw, CountModel, GREATEST_MEAN},
-    error::{ScatterError, require},
+use super::{
+    keep_out::KeepOut,
+    shape::Shape,
+    stock::{GroundLimits, Stock},
+};
+use crate::{
+    ron_text::from_ron,
+    scatter::{
+        counts::law::{CountLaw, CountModel, GREATEST_MEAN},
+        error::ScatterError,
+    },
+    setting::{SettingError, require},
 };
 
 const MOST_AREAS: usize = 10_000;
 const MOST_KEPT_OUT: usize = 100_000;
 const MOST_STOCK: usize = 64;
-/// Ten plants a square metre: a thicket of saplings. Grass is another matter.
+/// Ten plants a square metre: a thicket of saplings.
 const DENSEST_PER_HA: f32 = 1e5;
 const SPARSEST_PER_HA: f32 = 1e-3;
 /// Plants that one cell may hold: 16 MiB when packed.
@@ -35,7 +42,7 @@ pub struct ForestPlan {
     /// Side of the square cells in which the forest is planted and drawn. The cells do not change what stands where.
     /// units: m, domain: \[8, 1024\].
     pub cell_m: f32,
-    /// Where what grows. Where areas overlap both are planted; where two plants are too near to each other, that of the
+    /// What grows where. Where areas overlap both are planted; where two plants are too near to each other, that of the
     /// earlier area stays. At most 10,000.
     pub areas: Vec<Area>,
     /// Where nothing grows. At most 100,000.
@@ -52,13 +59,13 @@ impl Default for ForestPlan {
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Area {
-    /// What the area is called.
+    /// The area's name.
     pub name: String,
     /// Its outline on the map.
     pub shape: Shape,
     /// Plants per hectare (10,000 m²): 100 to 400 in a grown forest. domain: 0, or \[0.001, 100000\].
     pub density_per_ha: f32,
-    /// How the plants keep together or apart.
+    /// How the plants cluster or keep apart.
     pub pattern: CountModel,
     /// Side of the quadrats, the scale of the pattern's clumps; 0 gives as many quadrats as plants, as the paper advises.
     /// units: m, domain: 0, or \[`cell_m` / 512, 1000\] with at most 500 plants in a quadrat.
@@ -99,17 +106,10 @@ impl ForestPlan {
     /// Reads and checks a plan.
     ///
     /// # Errors
-    /// [`ScatterError::Syntax`] with line and column where `text` is no RON of a plan, [`ScatterError::OutOfRange`] with
-    /// the field where it is one that cannot be planted.
+    /// [`ScatterError::Syntax`] with line and column where `text` is no RON of a plan, [`ScatterError::Setting`]
+    /// with the field where it is one that cannot be planted.
     pub fn from_ron(text: &str) -> Result<Self, ScatterError> {
-        let extensions = Extensions::UNWRAP_VARIANT_NEWTYPES | Extensions::IMPLICIT_SOME;
-        let plan: Self = Options::default().with_default_extension(extensions).from_str(text).map_err(|error| {
-            ScatterError::Syntax {
-                line: error.span.start.line,
-                column: error.span.start.col,
-                message: error.code.to_string(),
-            }
-        })?;
+        let plan: Self = from_ron(text)?;
         plan.validate()?;
         Ok(plan)
     }
@@ -117,8 +117,8 @@ impl ForestPlan {
     /// Checks every field.
     ///
     /// # Errors
-    /// [`ScatterError::OutOfRange`] for the first field outside its domain.
-    pub fn validate(&self) -> Result<(), ScatterError> {
+    /// [`SettingError`] for the first field outside its domain.
+    pub fn validate(&self) -> Result<(), SettingError> {
         require("cell_m", self.cell_m, 8.0..=1024.0)?;
         require("areas.len()", self.areas.len(), 0..=MOST_AREAS)?;
         require("keep_out.len()", self.keep_out.len(), 0..=MOST_KEPT_OUT)?;
@@ -133,7 +133,7 @@ impl ForestPlan {
 }
 
 impl Area {
-    fn validate(&self, cell_m: f32) -> Result<(), ScatterError> {
+    fn validate(&self, cell_m: f32) -> Result<(), SettingError> {
         self.shape.validate().map_err(|error| error.inside("shape"))?;
         if self.density_per_ha != 0.0 {
             let densest = DENSEST_PER_HA.min(MOST_IN_CELL / (cell_m * cell_m) * SQUARE_METRES_PER_HA);
@@ -155,13 +155,13 @@ impl Area {
         self.validate_pattern()
     }
 
-    fn validate_pattern(&self) -> Result<(), ScatterError> {
+    fn validate_pattern(&self) -> Result<(), SettingError> {
         if self.density_per_ha == 0.0 {
             return self.pattern.validate().map_err(|error| error.inside("pattern"));
         }
         if self.plants_in_quadrat() > GREATEST_MEAN {
             let most = (GREATEST_MEAN / f64::from(self.density_per_m2())).sqrt();
-            return Err(ScatterError::out_of_range(
+            return Err(SettingError::new(
                 "quadrat_m",
                 self.quadrat_side_m(),
                 format!("at most {most:.3} with {} plants per hectare", self.density_per_ha),
@@ -186,7 +186,7 @@ impl Area {
     }
 
     /// The law of the number of plants in a quadrat.
-    pub(in crate::scatter) fn law(&self) -> Result<CountLaw, ScatterError> {
+    pub(in crate::scatter) fn law(&self) -> Result<CountLaw, SettingError> {
         self.pattern.with_mean(self.plants_in_quadrat())
     }
 }
@@ -194,6 +194,7 @@ impl Area {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ron_text::SyntaxError;
 
     const MIXED: &str = include_str!("../../../assets/forests/mixed.forest.ron");
 
@@ -204,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn the_shipped_forest_is_valid_and_survives_writing() {
+    fn shipped_forest_is_valid_and_round_trips_through_ron() {
         let plan = ForestPlan::from_ron(MIXED).unwrap();
         assert!(plan.areas.len() > 1 && plan.keep_out.len() > 1);
         let written = ron::to_string(&plan).unwrap();
@@ -231,16 +232,16 @@ mod tests {
     }
 
     #[test]
-    fn a_cell_never_holds_millions() {
+    fn more_plants_than_a_cell_may_hold_are_refused() {
         let mut plan = ForestPlan { cell_m: 1024.0, areas: vec![Area::default()], ..Default::default() };
         plan.areas[0].density_per_ha = 50_000.0;
         assert!(plan.validate().unwrap_err().to_string().starts_with("`areas[0].density_per_ha` is 50000"));
     }
 
     #[test]
-    fn a_misspelt_field_is_found_by_line_and_name() {
+    fn an_unknown_field_is_reported_with_line_and_name() {
         let text = "(\n areas: [(\n  densty_per_ha: 3,\n )],\n)";
-        let Err(ScatterError::Syntax { line, message, .. }) = ForestPlan::from_ron(text) else {
+        let Err(ScatterError::Syntax(SyntaxError { line, message, .. })) = ForestPlan::from_ron(text) else {
             panic!("an unknown field must be a syntax error")
         };
         assert_eq!(line, 3);

@@ -4,11 +4,10 @@ use bevy::{math::DVec2, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    MOST_CORNERS, Place,
-    polygon::{self, Polygon, place},
-    require_place,
+    place::{MOST_CORNERS, Place, in_f64, require_place},
+    polygon::{self, Polygon},
 };
-use crate::scatter::error::{ScatterError, require};
+use crate::setting::{SettingError, require};
 
 /// A shape that is kept free of stems.
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
@@ -45,7 +44,7 @@ pub enum KeepOut {
 }
 
 impl KeepOut {
-    pub(super) fn validate(&self) -> Result<(), ScatterError> {
+    pub(super) fn validate(&self) -> Result<(), SettingError> {
         match self {
             Self::Path { points_m, width_m } => {
                 require("points_m.len()", points_m.len(), 2..=MOST_CORNERS)?;
@@ -67,32 +66,32 @@ impl KeepOut {
         }
     }
 
-    /// The simple pieces of which the shape is made; a path has one for each stretch, so that far ones cost nothing.
+    /// The simple pieces of which the shape is made; a path has one for each segment, so that far ones cost nothing.
     pub(in crate::scatter) fn blockers(&self) -> Vec<Blocker> {
         match self {
             Self::Path { points_m, width_m } => {
                 let half_width = 0.5 * f64::from(*width_m);
-                let stretch = |pair: &[Place]| Blocker::Stretch { a: place(pair[0]), b: place(pair[1]), half_width };
-                points_m.windows(2).map(stretch).collect()
+                let segment = |pair: &[Place]| Blocker::Segment { a: in_f64(pair[0]), b: in_f64(pair[1]), half_width };
+                points_m.windows(2).map(segment).collect()
             }
             Self::House { centre_m, size_m, turn_deg } => vec![Blocker::House {
-                centre: place(*centre_m),
-                half_size: 0.5 * place(*size_m),
+                centre: in_f64(*centre_m),
+                half_size: 0.5 * in_f64(*size_m),
                 along: DVec2::from_angle(f64::from(*turn_deg).to_radians()),
             }],
             Self::Disc { centre_m, radius_m } => {
-                let centre = place(*centre_m);
-                vec![Blocker::Stretch { a: centre, b: centre, half_width: f64::from(*radius_m) }]
+                let centre = in_f64(*centre_m);
+                vec![Blocker::Segment { a: centre, b: centre, half_width: f64::from(*radius_m) }]
             }
             Self::Water { shore_m } => vec![Blocker::Water(Polygon::new(shore_m))],
         }
     }
 }
 
-/// A piece of a shape that is kept free, made ready for questions.
+/// A piece of a shape that is kept free, prepared for queries.
 #[derive(Clone, Debug)]
 pub(in crate::scatter) enum Blocker {
-    Stretch { a: DVec2, b: DVec2, half_width: f64 },
+    Segment { a: DVec2, b: DVec2, half_width: f64 },
     House { centre: DVec2, half_size: DVec2, along: DVec2 },
     Water(Polygon),
 }
@@ -101,7 +100,7 @@ impl Blocker {
     /// The rectangle around the piece.
     pub(in crate::scatter) fn bounds(&self) -> [DVec2; 2] {
         match self {
-            Self::Stretch { a, b, half_width } => [a.min(*b) - *half_width, a.max(*b) + *half_width],
+            Self::Segment { a, b, half_width } => [a.min(*b) - *half_width, a.max(*b) + *half_width],
             Self::House { centre, half_size, along } => {
                 let reach = along.abs() * half_size.x + along.perp().abs() * half_size.y;
                 [centre - reach, centre + reach]
@@ -113,7 +112,7 @@ impl Blocker {
     /// Whether a stem may not stand here.
     pub(in crate::scatter) fn covers(&self, at: DVec2) -> bool {
         match self {
-            Self::Stretch { a, b, half_width } => {
+            Self::Segment { a, b, half_width } => {
                 let way = b - a;
                 let share = (at - a).dot(way) / way.length_squared();
                 let nearest = if share.is_nan() { *a } else { a + way * share.clamp(0.0, 1.0) };
@@ -139,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_path_is_as_wide_as_it_says_and_round_at_its_ends() {
+    fn a_path_has_its_width_and_round_ends() {
         let path = KeepOut::Path { points_m: vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [10.0, 10.0]], width_m: 2.0 };
         assert!(covers(&path, 5.0, 0.99) && covers(&path, 10.9, 5.0) && covers(&path, -0.9, 0.0));
         assert!(!covers(&path, 5.0, 1.01) && !covers(&path, 8.9, 5.0) && !covers(&path, -0.8, 0.8));
@@ -153,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_covered_is_within_the_bounds() {
+    fn bounds_are_tight() {
         let shapes = [
             KeepOut::House { centre_m: [3.0, 4.0], size_m: [20.0, 7.0], turn_deg: 33.0 },
             KeepOut::Disc { centre_m: [-3.0, 4.0], radius_m: 11.0 },
@@ -176,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn shapes_that_are_none_are_refused() {
+    fn bad_shapes_are_refused() {
         let error = |keep_out: KeepOut| keep_out.validate().unwrap_err().to_string();
         let path = KeepOut::Path { points_m: vec![[0.0, 0.0]], width_m: 2.0 };
         assert!(error(path).starts_with("`points_m.len()` is 1"));

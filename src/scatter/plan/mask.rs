@@ -1,35 +1,35 @@
-//! A painted map of density.
+//! A map of density, given as rows of digits.
 
 use bevy::math::DVec2;
 
-use super::{Place, polygon::place};
-use crate::scatter::error::{ScatterError, require};
+use super::place::{Place, in_f64};
+use crate::setting::{SettingError, require};
 
 const MOST_POINTS_ALONG: usize = 4096;
 /// The character of full density.
 const FULL: f32 = 9.0;
 
 /// Checks the rows of a mask.
-pub(super) fn validate(rows: &[String]) -> Result<(), ScatterError> {
+pub(super) fn validate(rows: &[String]) -> Result<(), SettingError> {
     require("rows.len()", rows.len(), 1..=MOST_POINTS_ALONG)?;
     let columns = rows[0].len();
     for (index, row) in rows.iter().enumerate() {
         require(&format!("rows[{index}].len()"), row.len(), 1..=MOST_POINTS_ALONG)?;
         if row.len() != columns {
             let field = format!("rows[{index}].len()");
-            return Err(ScatterError::out_of_range(field, row.len(), format!("that of rows[0], {columns}")));
+            return Err(SettingError::new(field, row.len(), format!("that of rows[0], {columns}")));
         }
         if let Some(wrong) = row.chars().find(|c| !c.is_ascii_digit() && *c != '.') {
             let value = format!("`{}`", wrong.escape_default());
-            return Err(ScatterError::out_of_range(format!("rows[{index}]"), value, "digits from 0 to 9, and dots"));
+            return Err(SettingError::new(format!("rows[{index}]"), value, "digits from 0 to 9, and dots"));
         }
     }
     Ok(())
 }
 
-/// A mask, made ready for questions.
+/// A mask, prepared for queries.
 #[derive(Clone, Debug)]
-pub(in crate::scatter) struct PaintedMask {
+pub(in crate::scatter) struct DensityMask {
     min: DVec2,
     max: DVec2,
     columns: usize,
@@ -37,12 +37,12 @@ pub(in crate::scatter) struct PaintedMask {
     levels: Vec<u8>,
 }
 
-impl PaintedMask {
+impl DensityMask {
     pub(super) fn new(min_m: Place, max_m: Place, rows: &[String]) -> Self {
         let level = |c: u8| if c == b'.' { 0 } else { c.wrapping_sub(b'0') };
         Self {
-            min: place(min_m),
-            max: place(max_m),
+            min: in_f64(min_m),
+            max: in_f64(max_m),
             columns: rows.first().map_or(0, String::len),
             rows: rows.len(),
             levels: rows.iter().flat_map(|row| row.bytes().map(level)).collect(),
@@ -53,7 +53,7 @@ impl PaintedMask {
         [self.min, self.max]
     }
 
-    /// Bilinear between the centres of the painted points; the border points reach to the edge.
+    /// Bilinear between the centres of the points; the border points reach to the edge.
     pub(super) fn coverage(&self, at: DVec2) -> f32 {
         let points = DVec2::new(self.columns as f64, self.rows as f64);
         let at = ((at - self.min) / (self.max - self.min) * points - 0.5).clamp(DVec2::ZERO, points - 1.0);
@@ -77,8 +77,8 @@ mod tests {
     }
 
     #[test]
-    fn coverage_is_painted_at_the_centres_and_smooth_between() {
-        let mask = PaintedMask::new([0.0, 0.0], [30.0, 20.0], &rows(&["09.", "369"]));
+    fn coverage_is_that_of_the_digits_at_the_centres_and_linear_between() {
+        let mask = DensityMask::new([0.0, 0.0], [30.0, 20.0], &rows(&["09.", "369"]));
         let at = |x: f64, z: f64| mask.coverage(DVec2::new(x, z));
         assert_relative_eq!(at(5.0, 5.0), 0.0);
         assert_relative_eq!(at(15.0, 5.0), 1.0);
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mask_that_is_no_rectangle_of_digits_is_refused() {
+    fn a_mask_must_be_a_rectangle_of_digits() {
         let error = |text: &[&str]| validate(&rows(text)).unwrap_err().to_string();
         assert_eq!(error(&[]), "`rows.len()` is 0, but must be 1 to 4096");
         assert_eq!(error(&["12", "1"]), "`rows[1].len()` is 1, but must be that of rows[0], 2");

@@ -1,19 +1,15 @@
-//! Polygons: whether one is simple, and what is inside.
+//! Polygons: whether they are simple, and which places are inside.
 
 use bevy::math::DVec2;
 
-use super::{MOST_CORNERS, Place, require_place};
-use crate::scatter::error::{ScatterError, require};
+use super::place::{MOST_CORNERS, Place, in_f64, require_place};
+use crate::setting::{SettingError, require};
 
 /// Rows of equal height into which the edges are sorted: as many as edges, up to this.
 const MOST_BANDS: usize = 1024;
 
-pub(super) fn place([x, z]: Place) -> DVec2 {
-    DVec2::new(f64::from(x), f64::from(z))
-}
-
 /// Refuses a polygon with too few or too many corners, without area, or that touches or crosses itself.
-pub(super) fn validate(field: &str, corners: &[Place]) -> Result<(), ScatterError> {
+pub(super) fn validate(field: &str, corners: &[Place]) -> Result<(), SettingError> {
     require(&format!("{field}.len()"), corners.len(), 3..=MOST_CORNERS)?;
     for (index, corner) in corners.iter().enumerate() {
         require_place(&format!("{field}[{index}]"), *corner)?;
@@ -34,7 +30,7 @@ pub(super) fn validate(field: &str, corners: &[Place]) -> Result<(), ScatterErro
             };
             if wrong {
                 let edges = format!("crossing itself, edge {first} and edge {second}");
-                return Err(ScatterError::out_of_range(field, edges, "a polygon that does not touch itself"));
+                return Err(SettingError::new(field, edges, "a polygon that does not touch itself"));
             }
         }
     }
@@ -42,7 +38,7 @@ pub(super) fn validate(field: &str, corners: &[Place]) -> Result<(), ScatterErro
     require(&format!("{field}.area()"), area, 0.01..=f64::MAX)
 }
 
-/// Whether the way from `a` by `b` to `c` goes back over itself, or stands still.
+/// Whether the path from `a` by `b` to `c` goes back over itself, or has an edge without length.
 fn turns_back(a: DVec2, b: DVec2, c: DVec2) -> bool {
     a == b || b == c || ((b - a).perp_dot(c - b) == 0.0 && (b - a).dot(c - b) < 0.0)
 }
@@ -59,7 +55,7 @@ fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
 
 fn edges(corners: &[Place]) -> impl Iterator<Item = [DVec2; 2]> {
     let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(|(a, b)| [place(*a), place(*b)])
+    corners.iter().zip(next).map(|(a, b)| [in_f64(*a), in_f64(*b)])
 }
 
 /// A polygon whose edges are sorted into bands of z, so that a place is compared with those of its own band only.
@@ -73,7 +69,7 @@ pub(in crate::scatter) struct Polygon {
 impl Polygon {
     /// Of corners that have been validated.
     pub(super) fn new(corners: &[Place]) -> Self {
-        let places = corners.iter().copied().map(place);
+        let places = corners.iter().copied().map(in_f64);
         let (min, max) = places
             .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(min, max), corner| (min.min(corner), max.max(corner)));
         let mut polygon = Self { min, max, bands: vec![Vec::new(); corners.len().clamp(1, MOST_BANDS)] };
@@ -114,7 +110,7 @@ mod tests {
     const L_SHAPE: [Place; 6] = [[0.0, 0.0], [30.0, 0.0], [30.0, 10.0], [10.0, 10.0], [10.0, 30.0], [0.0, 30.0]];
 
     #[test]
-    fn an_l_contains_its_arms_and_not_its_corner() {
+    fn an_l_contains_its_two_parts_and_not_the_rest_of_its_box() {
         let polygon = Polygon::new(&L_SHAPE);
         let inside = |x, z| polygon.contains(DVec2::new(x, z));
         assert!(inside(5.0, 25.0) && inside(25.0, 5.0) && inside(1.0, 1.0));
@@ -122,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn polygons_that_are_no_areas_are_refused() {
+    fn polygons_that_are_not_simple_are_refused() {
         let error = |corners: &[Place]| validate("corners_m", corners).unwrap_err().to_string();
         validate("corners_m", &L_SHAPE).unwrap();
         assert!(error(&[[0.0, 0.0], [1.0, 0.0]]).starts_with("`corners_m.len()` is 2"));
@@ -142,7 +138,7 @@ mod tests {
     proptest! {
         /// A star about a centre: a place is inside if it is nearer to the centre than the outline in its direction.
         #[test]
-        fn stars_contain_what_their_triangles_contain(
+        fn stars_contain_the_places_in_their_triangles(
             radii in prop::collection::vec(5.0_f32..40.0, 3..60), x in -45.0_f64..45.0, z in -45.0_f64..45.0,
         ) {
             let count = radii.len() as f32;

@@ -4,12 +4,11 @@ use bevy::{math::DVec2, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Place,
-    mask::{self, PaintedMask},
+    mask::{self, DensityMask},
+    place::{Place, in_f64, require_rectangle},
     polygon::{self, Polygon},
-    require_rectangle,
 };
-use crate::scatter::error::ScatterError;
+use crate::setting::SettingError;
 
 /// The outline of an area on the map.
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
@@ -27,7 +26,7 @@ pub enum Shape {
         /// Its corners (x, z) in either sense, 3 to 4096. units: m.
         corners_m: Vec<Place>,
     },
-    /// A painted map of the density, spread over a rectangle and smoothed between its points.
+    /// A map of the density, spread over a rectangle and smoothed between its points.
     Mask {
         /// Least corner (x, z). units: m.
         min_m: Place,
@@ -47,7 +46,7 @@ impl Default for Shape {
 }
 
 impl Shape {
-    pub(super) fn validate(&self) -> Result<(), ScatterError> {
+    pub(super) fn validate(&self) -> Result<(), SettingError> {
         match self {
             Self::Rectangle { min_m, max_m } => require_rectangle(*min_m, *max_m),
             Self::Polygon { corners_m } => polygon::validate("corners_m", corners_m),
@@ -59,22 +58,20 @@ impl Shape {
     }
 }
 
-/// A shape, made ready for questions.
+/// A shape, prepared for queries.
 #[derive(Clone, Debug)]
 pub(in crate::scatter) enum Region {
     Rectangle { min: DVec2, max: DVec2 },
     Polygon(Polygon),
-    Mask(PaintedMask),
+    Mask(DensityMask),
 }
 
 impl Region {
     pub(in crate::scatter) fn new(shape: &Shape) -> Self {
         match shape {
-            Shape::Rectangle { min_m, max_m } => {
-                Self::Rectangle { min: polygon::place(*min_m), max: polygon::place(*max_m) }
-            }
+            Shape::Rectangle { min_m, max_m } => Self::Rectangle { min: in_f64(*min_m), max: in_f64(*max_m) },
             Shape::Polygon { corners_m } => Self::Polygon(Polygon::new(corners_m)),
-            Shape::Mask { min_m, max_m, rows } => Self::Mask(PaintedMask::new(*min_m, *max_m, rows)),
+            Shape::Mask { min_m, max_m, rows } => Self::Mask(DensityMask::new(*min_m, *max_m, rows)),
         }
     }
 

@@ -3,9 +3,9 @@
 use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
 
-use crate::scatter::error::{ScatterError, require};
+use crate::setting::{SettingError, require};
 
-/// Higher and lower than any ground on Earth.
+/// Beyond any ground on Earth, up and down.
 const HIGHEST_M: f32 = 1e5;
 
 /// A species in an area.
@@ -53,9 +53,9 @@ impl Default for Stock {
 }
 
 impl Stock {
-    pub(super) fn validate(&self) -> Result<(), ScatterError> {
+    pub(super) fn validate(&self) -> Result<(), SettingError> {
         if self.species.is_empty() {
-            return Err(ScatterError::out_of_range("species", "empty", "the name of a species"));
+            return Err(SettingError::new("species", "empty", "the name of a species"));
         }
         require("share", self.share, 0.0..=1e6)?;
         require("age_years", self.age_years, 0.1..=1e4)?;
@@ -92,7 +92,7 @@ impl Default for GroundLimits {
 }
 
 impl GroundLimits {
-    pub(super) fn validate(&self) -> Result<(), ScatterError> {
+    pub(super) fn validate(&self) -> Result<(), SettingError> {
         require("lowest_m", self.lowest_m, -HIGHEST_M..=HIGHEST_M)?;
         require("highest_m", self.highest_m, self.lowest_m..=HIGHEST_M)?;
         require("fade_m", self.fade_m, 0.0..=1000.0)?;
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ground_is_admitted_up_to_its_limits_and_thins_out_in_the_bands() {
+    fn ground_is_admitted_within_its_limits_with_a_falling_chance_in_the_bands() {
         let limits = GroundLimits { lowest_m: 100.0, highest_m: 900.0, fade_m: 40.0, steepest_deg: 45.0 };
         assert!(limits.admit(500.0, 0.99, 0.0));
         assert!(!limits.admit(500.0, 1.01, 0.0));
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn limits_that_admit_nothing_are_refused() {
+    fn limits_in_the_wrong_order_are_refused() {
         let limits = GroundLimits { lowest_m: 10.0, highest_m: 5.0, ..Default::default() };
         assert_eq!(limits.validate().unwrap_err().to_string(), "`highest_m` is 5, but must be 10 to 100000");
     }

@@ -1,7 +1,7 @@
-//! Finds rectangles by place.
+//! An index of rectangles by place.
 //!
 //! Rectangles are kept in square tiles as large as they are (to the next power of two), so that each lies in at most four
-//! of them; a question looks into the few tiles of each size that occurs. Its cost does not depend on how many rectangles
+//! of them. A query looks into the few tiles of each size that occurs. Its cost does not depend on how many rectangles
 //! lie elsewhere, nor on their sizes.
 
 use bevy::math::{DVec2, IVec2};
@@ -72,7 +72,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_rectangle_that_reaches_in_is_missed(boxes in boxes(), x in -3000.0..3000.0, z in -3000.0..3000.0) {
+        fn every_overlapping_rectangle_is_found(boxes in boxes(), x in -3000.0..3000.0, z in -3000.0..3000.0) {
             let index = BoxIndex::new(boxes.clone());
             let (min, max) = (DVec2::new(x, z), DVec2::new(x + 70.0, z + 70.0));
             let mut found = vec![9];
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn rectangles_elsewhere_are_not_looked_at() {
+    fn far_rectangles_are_not_found() {
         let houses = (0..10_000).map(|i| {
             let at = DVec2::new(f64::from(i % 100), f64::from(i / 100)) * 100.0;
             [at, at + 10.0]

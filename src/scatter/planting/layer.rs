@@ -1,14 +1,16 @@
-//! An area made ready: its quadrats, and what they hold.
+//! A prepared area: its quadrats, and the plants that they hold.
 
 use bevy::math::{DVec2, IVec2};
 use rand::{Rng, RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 
-use crate::scatter::{
-    counts::Probabilities,
-    error::ScatterError,
-    ground::Ground,
-    plan::{Area, Region, Stock},
-    quadrat::throw_darts,
+use crate::{
+    scatter::{
+        counts::probability::Probabilities,
+        ground::Ground,
+        plan::{forest::Area, shape::Region, stock::Stock},
+        quadrat::place::throw_darts,
+    },
+    setting::SettingError,
 };
 
 /// How far rounding to `f32` may move a place, at the farthest from the origin.
@@ -51,7 +53,7 @@ impl Square {
     }
 }
 
-/// An area made ready.
+/// A prepared area.
 #[derive(Clone, Debug)]
 pub(super) struct Layer {
     /// The area's own stream of random numbers.
@@ -64,7 +66,7 @@ pub(super) struct Layer {
 }
 
 impl Layer {
-    pub(super) fn new(area: &Area, number: u32, seed: u64) -> Result<Self, ScatterError> {
+    pub(super) fn new(area: &Area, number: u32, seed: u64) -> Result<Self, SettingError> {
         Ok(Self {
             stream: mix(mix(seed) ^ u64::from(number)),
             number,
@@ -108,14 +110,14 @@ impl Layer {
         self.area.density_per_ha * self.region.coverage(at) * ground
     }
 
-    /// Adds what the quadrats hold that reach into `around`, where `free` lets it and the ground is right.
-    pub(super) fn sow(
+    /// Adds the plants of the quadrats that reach into `around`, where the place is `free` and the ground is right.
+    pub(super) fn add_candidates(
         &self,
         around: Square,
         cell: Square,
         ground: &impl Ground,
         free: impl Fn(DVec2) -> bool,
-        darts: &mut Vec<DVec2>,
+        places: &mut Vec<DVec2>,
         candidates: &mut Vec<Candidate>,
         most: usize,
     ) {
@@ -128,11 +130,11 @@ impl Layer {
         let (first, last) = (quadrat(from - ROUNDING_M), quadrat(to + ROUNDING_M));
         for row in first.y..=last.y {
             for column in first.x..=last.x {
-                let mut random = self.throw(IVec2::new(column, row), darts);
-                for dart in &*darts {
+                let mut random = self.draw_places(IVec2::new(column, row), places);
+                for place in &*places {
                     let seed = random.next_u64();
-                    // Everything is decided about the place as it will be told.
-                    let at = dart.as_vec2().as_dvec2();
+                    // Everything is decided for the place as it is returned, in `f32`.
+                    let at = place.as_vec2().as_dvec2();
                     let wanted = around.contains(at) && at.cmpge(min).all() && at.cmple(max).all();
                     if wanted
                         && candidates.len() < most
@@ -145,13 +147,13 @@ impl Layer {
         }
     }
 
-    /// Throws the plants of a quadrat, and gives back its random numbers.
-    fn throw(&self, quadrat: IVec2, darts: &mut Vec<DVec2>) -> Xoshiro256PlusPlus {
+    /// Draws the places of a quadrat's plants, and returns its random numbers.
+    fn draw_places(&self, quadrat: IVec2, places: &mut Vec<DVec2>) -> Xoshiro256PlusPlus {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(place_hash(self.stream, quadrat));
-        darts.clear();
+        places.clear();
         let count = self.counts.draw(&mut random);
         let corner = quadrat.as_dvec2() * self.quadrat_m;
-        throw_darts(corner, DVec2::splat(self.quadrat_m), count, self.least_distance_m(), &mut random, darts);
+        throw_darts(corner, DVec2::splat(self.quadrat_m), count, self.least_distance_m(), &mut random, places);
         random
     }
 
@@ -172,7 +174,7 @@ impl Layer {
         Some(Candidate { at, height_m, seed, least_distance_m, area: self.number, stock, in_cell: false, stays: true })
     }
 
-    /// Which species stands here: one of those that the ground admits, by their shares; mostly the same all over a drift.
+    /// Which species stands here: one of those that the ground admits, by their shares; mostly the same within a drift.
     fn choose_stock(&self, at: DVec2, seed: u64, admitted: impl Fn(&Stock) -> bool) -> Option<u32> {
         let shares = || self.area.stock.iter().map(|stock| if admitted(stock) { stock.share } else { 0.0 });
         let total: f32 = shares().sum();
@@ -212,14 +214,14 @@ impl Layer {
     }
 }
 
-/// Marks that keep random numbers of one seed for different purposes apart.
+/// Salts that separate the random numbers of one seed for different purposes.
 const COVERAGE: u64 = 0x636f_7665;
 const LIMITS: u64 = 0x6c69_6d69;
 const PURITY: u64 = 0x7075_7269;
 const SPECIES: u64 = 0x7370_6563;
 const DRIFT: u64 = 0x6472_6966;
 
-/// The finaliser of `SplitMix64` (Steele, Lea & Flood 2014): every bit of the answer depends on every bit of the question.
+/// The finaliser of `SplitMix64` (Steele, Lea & Flood 2014): every bit of the result depends on every bit of the value.
 fn mix(value: u64) -> u64 {
     let value = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let value = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

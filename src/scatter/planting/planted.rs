@@ -1,4 +1,4 @@
-//! A plant as it stands in its cell.
+//! A plant of a cell, and its packed form.
 
 use std::f32::consts::TAU;
 
@@ -6,7 +6,7 @@ use bevy::math::{DVec2, Vec2, Vec3};
 use rand::{Rng, RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::scatter::plan::Stock;
+use crate::scatter::plan::stock::Stock;
 
 /// Size at the age at which a species is called full-grown: 95%.
 const LEFT_TO_GROW: f32 = 0.05;
@@ -30,7 +30,7 @@ pub struct Planted {
     pub age_years: f32,
     /// How far it is ahead of the forest's season. units: days.
     pub season_days: f32,
-    /// A shade of its own, from -1 to 1.
+    /// Its shade within the species, from -1 to 1.
     pub tint: f32,
     /// Number of its species among [`Planter::species`](super::Planter::species).
     pub species: u8,
@@ -67,7 +67,7 @@ impl Planted {
     /// | 1 | height, the bits of an `f32` |
     /// | 2 | turn, 16 bits from 0 to 2π; size, 16 bits from 0 to 4 |
     /// | 3 | species; tint, 8 bits from -1 to 1; season, 8 bits from -128 to 127 days; the low byte of the seed |
-    pub fn pack(&self, corner_m: DVec2, cell_m: f32) -> [u32; 4] {
+    pub(crate) fn pack(&self, corner_m: DVec2, cell_m: f32) -> [u32; 4] {
         let whole = |share: f32, greatest: f32| (share.clamp(0.0, 1.0) * greatest).round() as u32;
         let place = DVec2::new(f64::from(self.position.x), f64::from(self.position.z));
         let place = ((place - corner_m) / f64::from(cell_m)).as_vec2();
@@ -82,7 +82,7 @@ impl Planted {
     }
 }
 
-/// What a packed plant still tells, rounded: 1 mm of place in a cell of 64 m, 0.1 mrad of turn, a day of season.
+/// What a packed plant holds, rounded: 1 mm of place in a cell of 64 m, 0.1 mrad of turn, a day of season.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stem {
     /// Where it leaves the ground, in the forest's own frame. units: m.
@@ -93,7 +93,7 @@ pub struct Stem {
     pub size: f32,
     /// How far it is ahead of the forest's season. units: days, domain: \[-128, 127\].
     pub season_days: f32,
-    /// A shade of its own, from -1 to 1.
+    /// Its shade within the species, from -1 to 1.
     pub tint: f32,
     /// Number of its species among [`Planter::species`](super::Planter::species).
     pub species: u8,
@@ -103,7 +103,7 @@ pub struct Stem {
 
 impl Stem {
     /// Reads what [`Planted::pack`] wrote, of the same cell.
-    pub fn unpack(words: [u32; 4], corner_m: DVec2, cell_m: f32) -> Self {
+    pub(crate) fn unpack(words: [u32; 4], corner_m: DVec2, cell_m: f32) -> Self {
         let place = corner_m + Self::place_in_cell(words, cell_m).as_dvec2();
         let [_, height, turn_size, rest] = words;
         let [species, tint, season, seed] = rest.to_le_bytes();
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn ages_seasons_and_tints_spread_as_the_stock_says() {
+    fn ages_seasons_and_tints_have_the_spread_of_the_stock() {
         let stock =
             Stock { season_offset_days: -20.0, season_spread_days: 6.0, tint_spread: 0.5, ..Default::default() };
         let plants = plants(&stock);
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn plants_of_one_age_grow_by_mitscherlich() {
+    fn size_follows_mitscherlichs_law() {
         let size = |age_years| {
             let stock = Stock { age_years, age_spread_years: 0.0, size_spread: 0.0, ..Default::default() };
             Planted::grow(Vec3::ZERO, &stock, 0, 1).size
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_packed_plant_tells_the_same() {
+    fn packing_round_trips_within_its_resolution() {
         let corner = DVec2::new(-64.0, 64.0);
         for (number, plant) in plants(&Stock::default()).into_iter().take(500).enumerate() {
             let across = number as f32 / 499.0 * 64.0;
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn the_bits_are_where_a_shader_looks_for_them() {
+    fn bits_are_where_the_shader_reads_them() {
         let plant = Planted {
             position: Vec3::new(14.0, 321.5, 36.0),
             turn_rad: 0.25 * TAU,

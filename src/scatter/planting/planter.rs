@@ -8,18 +8,23 @@ use super::{
     planted::Planted,
     spacing::keep_apart,
 };
-use crate::scatter::{
-    error::{ScatterError, require},
-    ground::Ground,
-    plan::{Blocker, ForestPlan, KeepOut},
+use crate::{
+    scatter::{
+        ground::Ground,
+        plan::{
+            forest::ForestPlan,
+            keep_out::{Blocker, KeepOut},
+        },
+    },
+    setting::{SettingError, require},
 };
 
 /// Species of one plan: their numbers are bytes.
 const MOST_SPECIES: usize = 256;
-/// Where areas overlap without measure, a cell stops here.
+/// Most candidates of a cell, where very many areas overlap.
 const MOST_CANDIDATES: usize = 1 << 22;
 
-/// A plan made ready to be planted.
+/// A plan, prepared for planting.
 #[derive(Clone, Debug)]
 pub struct Planter {
     cell_m: f64,
@@ -34,11 +39,11 @@ pub struct Planter {
 }
 
 impl Planter {
-    /// Makes a plan ready.
+    /// Prepares a plan.
     ///
     /// # Errors
-    /// [`ScatterError::OutOfRange`] where the plan is not valid or has more than 256 species.
-    pub fn new(plan: &ForestPlan) -> Result<Self, ScatterError> {
+    /// [`SettingError`] where the plan is not valid or has more than 256 species.
+    pub fn new(plan: &ForestPlan) -> Result<Self, SettingError> {
         plan.validate()?;
         // Areas where nothing grows still count, so that growing something there changes no other area.
         let layers: Vec<Layer> = plan
@@ -86,12 +91,12 @@ impl Planter {
     }
 
     /// The least corner (x, z) of a cell, m.
-    pub fn corner_m(&self, cell: IVec2) -> DVec2 {
+    pub(crate) fn corner_m(&self, cell: IVec2) -> DVec2 {
         cell.as_dvec2() * self.cell_m
     }
 
     /// The cell at a place (x, z), m.
-    pub fn cell_at(&self, place_m: Vec2) -> IVec2 {
+    pub(crate) fn cell_at(&self, place_m: Vec2) -> IVec2 {
         (place_m.as_dvec2() / self.cell_m).floor().as_ivec2()
     }
 
@@ -104,7 +109,7 @@ impl Planter {
 
     /// Plants per hectare to be expected at a place (x, z), before those go that are too near to each other; 0 where
     /// nothing may grow.
-    pub fn density_per_ha(&self, at: DVec2, ground: &impl Ground) -> f32 {
+    pub(crate) fn density_per_ha(&self, at: DVec2, ground: &impl Ground) -> f32 {
         let mut near = Vec::new();
         self.blockers_by_place.near(at, at, &mut near);
         if near.iter().any(|&number| self.blockers[number as usize].covers(at)) {
@@ -119,9 +124,8 @@ impl Planter {
         near.iter().map(|&number| self.layers[number as usize].density_per_ha(at, height_m, slope)).sum()
     }
 
-    /// Fills `planted` with what stands in a cell: the same whatever was planted before. Plants that stand too near to one
-    /// of another cell are compared with it, so `ground` is asked about places as far outside the cell as the greatest
-    /// least distance.
+    /// Fills `planted` with what stands in a cell: the same whatever was planted before. Plants near the border are compared
+    /// with those of other cells, so `ground` is asked about places as far outside the cell as the greatest least distance.
     pub fn plant(&self, cell: IVec2, ground: &impl Ground, planted: &mut Vec<Planted>) {
         planted.clear();
         let corner = self.corner_m(cell);
@@ -133,11 +137,11 @@ impl Planter {
         let free = |at: DVec2| !blockers.iter().any(|blocker| blocker.covers(at));
         self.layers_by_place.near(around.min, around.max, &mut near);
 
-        let (mut darts, mut candidates) = (Vec::new(), Vec::new());
+        let (mut places, mut candidates) = (Vec::new(), Vec::new());
         for (order, &number) in near.iter().enumerate() {
             // Every area has room for some plants, however many crowd into the earlier ones.
             let most = MOST_CANDIDATES / near.len() * (order + 1);
-            self.layers[number as usize].sow(around, cell, ground, free, &mut darts, &mut candidates, most);
+            self.layers[number as usize].add_candidates(around, cell, ground, free, &mut places, &mut candidates, most);
         }
         keep_apart(&mut candidates, self.greatest_distance_m);
         planted.extend(candidates.iter().filter(|one| one.in_cell && one.stays).map(|one| self.grow(one)));

@@ -1,4 +1,4 @@
-//! Keeps plants apart.
+//! Removes plants that stand too near to others.
 
 use bevy::math::DVec2;
 
@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn tiles_find_what_a_search_of_all_finds() {
+    fn tiles_agree_with_an_exhaustive_search() {
         for (count, side, distance) in [(500, 100.0, 4.0), (300, 5.0, 20.0), (2, 1e4, 0.1), (1, 1.0, 1.0)] {
             let mut tiled = candidates(count, side, distance, 3);
             let slow: Vec<bool> = tiled
@@ -119,7 +119,7 @@ mod tests {
 
     /// Matérn's second process: of a random pattern of density λ remain (1 - exp(-λ π d²)) / (π d²).
     #[test]
-    fn as_many_stay_as_matern_says() {
+    fn density_after_thinning_is_materns() {
         let (side, distance, count) = (1000.0, 4.0, 40_000);
         let mut candidates = candidates(count, side, distance, 8);
         for one in &mut candidates {

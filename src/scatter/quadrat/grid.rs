@@ -2,14 +2,14 @@
 
 use bevy::math::DVec2;
 
-use crate::scatter::{
-    counts::Frequencies,
-    error::{ScatterError, require},
+use crate::{
+    scatter::counts::frequencies::Frequencies,
+    setting::{SettingError, require},
 };
 
 /// 64 MiB of counts.
 const MOST_QUADRATS: f64 = (1 << 24) as f64;
-/// The Earth is no longer.
+/// The circumference of the Earth.
 const FARTHEST_M: f64 = 4.1e7;
 
 /// A rectangle of ground divided into equal quadrats, row after row.
@@ -25,9 +25,9 @@ impl QuadratGrid {
     /// Divides the ground from `min_m` to `max_m` into `columns` x `rows` quadrats.
     ///
     /// # Errors
-    /// [`ScatterError::OutOfRange`] where the ground has no area or is no number, or the quadrats are none or more than
+    /// [`SettingError`] where the ground has no area or is no number, or the quadrats are none or more than
     /// 2^24.
-    pub fn new(min_m: DVec2, max_m: DVec2, columns: u32, rows: u32) -> Result<Self, ScatterError> {
+    pub fn new(min_m: DVec2, max_m: DVec2, columns: u32, rows: u32) -> Result<Self, SettingError> {
         for (name, value) in [("min.x", min_m.x), ("min.y", min_m.y), ("max.x", max_m.x), ("max.y", max_m.y)] {
             require(name, value, -FARTHEST_M..=FARTHEST_M)?;
         }
@@ -42,7 +42,7 @@ impl QuadratGrid {
     ///
     /// # Errors
     /// As [`QuadratGrid::new`].
-    pub fn with_quadrat_for_each(points: usize, min_m: DVec2, max_m: DVec2) -> Result<Self, ScatterError> {
+    pub fn with_quadrat_for_each(points: usize, min_m: DVec2, max_m: DVec2) -> Result<Self, SettingError> {
         let whole = Self::new(min_m, max_m, 1, 1)?.quadrat_m;
         let columns = (points as f64 * whole.x / whole.y).sqrt().round().clamp(1.0, MOST_QUADRATS);
         let rows = (points as f64 / columns).round().max(1.0);
@@ -70,7 +70,7 @@ impl QuadratGrid {
     }
 
     /// The least corner of a quadrat, m.
-    pub fn corner_m(&self, quadrat: usize) -> DVec2 {
+    pub(super) fn corner_m(&self, quadrat: usize) -> DVec2 {
         let columns = self.columns as usize;
         self.min_m + self.quadrat_m * DVec2::new((quadrat % columns) as f64, (quadrat / columns) as f64)
     }
@@ -78,8 +78,8 @@ impl QuadratGrid {
     /// The number of points in each quadrat. Points on the far edges belong to the last quadrats.
     ///
     /// # Errors
-    /// [`ScatterError::OutOfRange`] for the first point that is outside the ground or no number.
-    pub fn count(&self, points: &[DVec2]) -> Result<Vec<u32>, ScatterError> {
+    /// [`SettingError`] for the first point that is outside the ground or no number.
+    pub(super) fn count(&self, points: &[DVec2]) -> Result<Vec<u32>, SettingError> {
         let mut counts = vec![0_u32; self.quadrats()];
         let cells = DVec2::new(f64::from(self.columns), f64::from(self.rows));
         let max_m = self.min_m + self.quadrat_m * cells;
@@ -90,7 +90,7 @@ impl QuadratGrid {
             // NaN is not inside either.
             if !(place.cmpge(-slack).all() && place.cmple(cells + slack).all()) {
                 let allowed = format!("from {} to {max_m}", self.min_m);
-                return Err(ScatterError::out_of_range(format!("points[{index}]"), point, allowed));
+                return Err(SettingError::new(format!("points[{index}]"), point, allowed));
             }
             let column = (place.x.max(0.0) as usize).min(self.columns as usize - 1);
             let row = (place.y.max(0.0) as usize).min(self.rows as usize - 1);
@@ -103,7 +103,7 @@ impl QuadratGrid {
     ///
     /// # Errors
     /// As [`QuadratGrid::count`] and [`Frequencies::new`].
-    pub fn frequencies(&self, points: &[DVec2]) -> Result<Frequencies, ScatterError> {
+    pub fn frequencies(&self, points: &[DVec2]) -> Result<Frequencies, SettingError> {
         Frequencies::of_counts(&self.count(points)?)
     }
 }
@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn points_are_counted_where_they_are_and_edges_belong_somewhere() {
+    fn points_are_counted_in_their_quadrat_also_on_edges() {
         let grid = QuadratGrid::new(DVec2::new(-10.0, 0.0), DVec2::new(10.0, 30.0), 2, 3).unwrap();
         let points = [(-10.0, 0.0), (-0.1, 9.9), (0.0, 10.0), (10.0, 30.0), (5.0, 25.0)].map(DVec2::from);
         assert_eq!(grid.count(&points).unwrap(), [2, 0, 0, 1, 0, 2]);
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn ground_without_area_and_quadrats_without_number_are_refused() {
+    fn ground_without_area_and_a_bad_number_of_quadrats_are_refused() {
         let error =
             |max_m: DVec2, columns, rows| QuadratGrid::new(DVec2::ZERO, max_m, columns, rows).unwrap_err().to_string();
         assert!(error(DVec2::new(0.0, 1.0), 1, 1).starts_with("`max.x - min.x` is 0"));

@@ -6,11 +6,10 @@
 //!   numbers can.
 //! - [`place_points`] puts the points into their quadrats.
 
-mod grid;
-mod place;
-mod whole;
+mod allocation;
+pub(super) mod grid;
+pub(super) mod place;
 
+pub use allocation::{draw_counts, exact_counts};
 pub use grid::QuadratGrid;
 pub use place::place_points;
-pub(super) use place::throw_darts;
-pub use whole::{draw_counts, exact_counts};

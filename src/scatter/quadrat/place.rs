@@ -1,12 +1,12 @@
-//! Where in its quadrat a plant stands.
+//! The places of plants in their quadrat.
 
 use bevy::math::DVec2;
 use rand::{Rng, RngExt};
 
 use super::grid::QuadratGrid;
-use crate::scatter::error::{ScatterError, require};
+use crate::setting::{SettingError, require};
 
-/// Throws for a plant before it is given up: as many find room in a quadrat that is nine tenths full.
+/// Darts thrown for a plant before it is left out: nearly all find room in a quadrat that is nine tenths full.
 const DARTS: u32 = 24;
 /// 160 MB of points.
 const MOST_POINTS: u64 = 10_000_000;
@@ -16,14 +16,14 @@ const MOST_POINTS: u64 = 10_000_000;
 /// different quadrats are either. A point that finds no room is left out.
 ///
 /// # Errors
-/// [`ScatterError::OutOfRange`] where `counts` are not as many as the quadrats, the points are more than ten million, or
+/// [`SettingError`] where `counts` are not as many as the quadrats, the points are more than ten million, or
 /// the distance does not fit into a quadrat.
 pub fn place_points(
     grid: &QuadratGrid,
     counts: &[u32],
     least_distance_m: f64,
     random: &mut impl Rng,
-) -> Result<Vec<DVec2>, ScatterError> {
+) -> Result<Vec<DVec2>, SettingError> {
     require("counts", counts.len(), grid.quadrats()..=grid.quadrats())?;
     let total: u64 = counts.iter().map(|&count| u64::from(count)).sum();
     require("points", total, 0..=MOST_POINTS)?;
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn quadrats_hold_what_they_were_given() {
+    fn quadrats_hold_their_counts() {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
         let counts: Vec<u32> = (0..100).map(|quadrat| quadrat % 7).collect();
         let points = place_points(&grid(), &counts, 0.0, &mut random).unwrap();
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn no_two_points_are_nearer_than_the_least_distance_even_where_there_is_no_room() {
+    fn points_keep_the_least_distance_even_where_there_is_no_room() {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
         let points = place_points(&grid(), &[60; 100], 2.0, &mut random).unwrap();
         assert!(points.len() < 6000);
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn millions_of_millions_are_refused() {
+    fn too_many_points_and_bad_distances_are_refused() {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
         let mut error =
             |counts: &[u32], distance| place_points(&grid(), counts, distance, &mut random).unwrap_err().to_string();

@@ -30,7 +30,7 @@ fn variogram(grid: &ElevationGrid, sectors: u32) -> Variogram {
 }
 
 #[test]
-fn ground_that_was_made_is_recognised() {
+fn the_parameters_of_made_ground_are_recovered() {
     for model in CovarianceModel::ALL {
         let settings = settings(model, 3);
         let fit = fit_model(&variogram(&map(&settings, 512), 1), model).unwrap();
@@ -62,7 +62,7 @@ fn the_dimension_of_a_fractal_is_recovered() {
 }
 
 #[test]
-fn ridges_are_recognised_with_their_direction() {
+fn anisotropy_is_recovered_with_its_direction() {
     let anisotropy = Anisotropy { ratio: 2.5, azimuth_deg: 30.0 };
     let settings = TurningBandsSettings { anisotropy, ..settings(CovarianceModel::Exponential, 8) };
     let fit = fit_model(&variogram(&map(&settings, 512), 8), CovarianceModel::Exponential).unwrap();
@@ -72,7 +72,7 @@ fn ridges_are_recognised_with_their_direction() {
 }
 
 #[test]
-fn the_units_of_a_map_do_not_matter() {
+fn fits_do_not_depend_on_units() {
     let grid = map(&settings(CovarianceModel::Bessel, 2), 128);
     let heights_km = grid.heights_m().iter().map(|height| height * 1e-3).collect();
     let small = ElevationGrid::new(128, 128, DVec2::splat(CELL_M * 1e-3), heights_km).unwrap();
@@ -82,7 +82,7 @@ fn the_units_of_a_map_do_not_matter() {
 }
 
 #[test]
-fn real_ground_is_fitted_and_new_ground_of_its_kind_made() {
+fn real_ground_is_fitted_and_reproduced() {
     let bytes = include_bytes!("../../../assets/terrain/rmnp-dem-16bit.png");
     let scale = ElevationScale { cell_x_m: 233.0, cell_z_m: 234.0, ..Default::default() };
     let real = ElevationGrid::from_png(bytes, &scale).unwrap();

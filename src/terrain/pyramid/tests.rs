@@ -15,7 +15,7 @@ fn build_all(pyramid: &mut Pyramid) {
     while let Some(key) = pyramid.next_to_build() {
         pyramid.receive(key);
     }
-    pyramid.draw();
+    pyramid.select_drawn();
 }
 
 /// The squares that are drawn cover each of these places exactly once.
@@ -31,23 +31,23 @@ fn assert_covered_once(pyramid: &Pyramid, about: DVec2, radius_m: f64, random: &
 }
 
 #[test]
-fn the_ground_is_covered_once_however_the_viewer_jumps_about() {
+fn the_ground_is_covered_once_wherever_viewers_jump() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
     let mut pyramid = Pyramid::new(SHAPE);
     let mut place = DVec2::ZERO;
-    pyramid.look(&[eye(0.0, 0.0, 2.0)]);
+    pyramid.select(&[eye(0.0, 0.0, 2.0)]);
     build_all(&mut pyramid);
     for _ in 0..60 {
         place += DVec2::new(random.random_range(-400.0..400.0), random.random_range(-400.0..400.0));
-        pyramid.look(&[Eye { place, above_ground_m: random.random_range(0.0..300.0) }]);
+        pyramid.select(&[Eye { place, above_ground_m: random.random_range(0.0..300.0) }]);
         // Only a part of what is wanted is ready in time.
         for _ in 0..random.random_range(0..40) {
             let Some(key) = pyramid.next_to_build() else { break };
             pyramid.receive(key);
         }
-        pyramid.draw();
+        pyramid.select_drawn();
         assert_covered_once(&pyramid, place, 3000.0, &mut random);
-        pyramid.forgotten().for_each(drop);
+        pyramid.dropped().for_each(drop);
     }
 }
 
@@ -57,7 +57,7 @@ fn neighbours_differ_by_one_level_once_all_is_built() {
     for _ in 0..30 {
         let mut pyramid = Pyramid::new(SHAPE);
         let at = eye(random.random_range(-1e4..1e4), random.random_range(-1e4..1e4), random.random_range(0.0..500.0));
-        pyramid.look(&[at]);
+        pyramid.select(&[at]);
         build_all(&mut pyramid);
         assert!(pyramid.is_complete());
         for (key, _) in pyramid.drawn() {
@@ -67,15 +67,15 @@ fn neighbours_differ_by_one_level_once_all_is_built() {
 }
 
 #[test]
-fn work_follows_what_is_near_and_memory_stays_flat() {
+fn work_and_memory_stay_bounded() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(3);
     let mut pyramid = Pyramid::new(SHAPE);
     let mut most = 0;
     for flight in 0..200 {
         let at = 1e5 * DVec2::new(random.random_range(-1.0..1.0), random.random_range(-1.0..1.0));
-        pyramid.look(&[Eye { place: at, above_ground_m: 2.0 }]);
+        pyramid.select(&[Eye { place: at, above_ground_m: 2.0 }]);
         build_all(&mut pyramid);
-        pyramid.forgotten().for_each(drop);
+        pyramid.dropped().for_each(drop);
         most = most.max(pyramid.nodes.len());
         assert!(flight == 0 || pyramid.nodes.len() < 1200, "{} squares", pyramid.nodes.len());
     }
@@ -83,12 +83,12 @@ fn work_follows_what_is_near_and_memory_stays_flat() {
 }
 
 #[test]
-fn what_is_at_a_border_does_not_flicker() {
+fn a_viewer_on_a_border_makes_nothing_flicker() {
     let mut pyramid = Pyramid::new(SHAPE);
     let mut drawn = Vec::new();
     for step in 0..20 {
         // The side of level 0 is 64 m; level 1 is split at 204.8 m.
-        pyramid.look(&[eye(-204.8 + f64::from(step % 2), 64.0, 0.0)]);
+        pyramid.select(&[eye(-204.8 + f64::from(step % 2), 64.0, 0.0)]);
         build_all(&mut pyramid);
         drawn.push(pyramid.drawn().len());
     }
@@ -98,7 +98,7 @@ fn what_is_at_a_border_does_not_flicker() {
 /// Walks along every seam of random views, finished and half built, and finds the upright gap between the two edges
 /// covered by triangles that are shown.
 #[test]
-fn no_seam_is_open() {
+fn all_gaps_between_levels_are_closed() {
     let settings = TurningBandsSettings { finest_wavelength_m: 8.0, seed: 5, ..TurningBandsSettings::default() };
     let ground = TurningBands::new(&settings).unwrap();
     let mut random = Xoshiro256PlusPlus::seed_from_u64(4);
@@ -107,13 +107,13 @@ fn no_seam_is_open() {
         let mut pyramid = Pyramid::new(PyramidShape { coarsest_level: 5, reach_m: 900.0, ..SHAPE });
         for _ in 0..3 {
             let at = 400.0 * DVec2::new(random.random_range(-1.0..1.0), random.random_range(-1.0..1.0));
-            pyramid.look(&[Eye { place: at, above_ground_m: 2.0 }]);
+            pyramid.select(&[Eye { place: at, above_ground_m: 2.0 }]);
             for _ in 0..random.random_range(5..120) {
                 let Some(key) = pyramid.next_to_build() else { break };
                 pyramid.receive(key);
             }
-            pyramid.draw();
-            pyramid.forgotten().for_each(drop);
+            pyramid.select_drawn();
+            pyramid.dropped().for_each(drop);
             let mut built = HashMap::new();
             for (key, seam) in pyramid.drawn() {
                 for edge in Edge::ALL {

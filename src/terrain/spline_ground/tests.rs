@@ -45,7 +45,7 @@ fn the_surface_is_the_sum_over_all_control_points() {
 }
 
 #[test]
-fn planes_and_levels_are_kept() {
+fn planes_stay_planes() {
     let ground = ground(vec![patch([0, 0], 8, 8, |column, row| 3.0 * column - 2.0 * row)]);
     for (column, row) in [(2.0, 2.0), (3.7, 4.2), (5.5, 1.5)] {
         let place = DVec2::new(column * 10.0, row * 20.0);
@@ -79,7 +79,7 @@ fn heights_and_gradients_are_continuous_across_patches_and_ends() {
 }
 
 #[test]
-fn away_from_the_patches_lies_the_base() {
+fn the_base_lies_outside_all_patches() {
     let ground = ground(vec![patch([0, 0], 3, 3, rugged)]);
     for place in [DVec2::splat(1e4), DVec2::splat(-1e300), DVec2::new(f64::MAX, 0.0)] {
         assert_eq!((ground.height_m(place), ground.gradient(place)), (5.0, DVec2::ZERO));

@@ -23,7 +23,7 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 #[test]
-fn the_lookup_is_as_near_to_the_sum_as_it_says_and_within_a_thousandth_of_the_deviation() {
+fn the_lookup_error_is_the_predicted_one_and_below_a_thousandth_of_the_deviation() {
     for model in CovarianceModel::ALL {
         let field = field(&settings(model));
         let error_m = rms(places(2000).map(|place| field.height_m(place) - field.exact_height_m(place)));
@@ -83,7 +83,7 @@ fn the_covariance_is_the_model_s_in_every_direction() {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_bits_on_any_thread_and_another_seed_does_not() {
+fn the_same_seed_gives_the_same_bits_on_any_thread() {
     let settings = settings(CovarianceModel::Bessel);
     let shared = field(&settings);
     let heights = |field: &TurningBands| places(300).map(|place| field.height_m(place)).collect::<Vec<_>>();
@@ -97,7 +97,7 @@ fn the_same_seed_gives_the_same_bits_on_any_thread_and_another_seed_does_not() {
 }
 
 #[test]
-fn ground_is_without_seam_far_from_the_origin() {
+fn ground_is_continuous_far_from_the_origin() {
     let field = field(&settings(CovarianceModel::DoubleExponential));
     // 10 000 km away, steps of a centimetre on a smooth field: the greatest must be as small as the slope allows.
     let start = DVec2::new(1e7, -1e7);
@@ -121,7 +121,7 @@ fn bad_places_have_ground_and_bad_settings_an_error() {
 }
 
 #[test]
-fn the_share_of_the_finest_waves_is_told() {
+fn the_resolved_fraction_is_that_of_the_spectrum() {
     let rough = settings(CovarianceModel::Exponential);
     let coarse = TurningBandsSettings { finest_wavelength_m: 50.0, ..rough.clone() };
     assert_relative_eq!(field(&rough).resolved_fraction(), 1.0, epsilon = 0.01);

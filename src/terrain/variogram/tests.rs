@@ -61,7 +61,7 @@ fn a_ridge_varies_across_and_not_along() {
 }
 
 #[test]
-fn the_drift_does_not_count() {
+fn estimates_do_not_depend_on_drift() {
     let tilted =
         |tilt: f64| grid(30, 20, DVec2::ONE, |column, row| rugged(column, row) + tilt * f64::from(column + row));
     let settings = VariogramSettings { drift: Drift::Plane, ..Default::default() };

@@ -1,6 +1,6 @@
 //! Bark: what a species' bark looks like, and its textures.
 //!
-//! [`BarkPattern`] decides how the surface is built; [`texture`] paints it as a height field that tiles.
+//! [`BarkPattern`] decides how the surface is built; [`texture`] renders it as a height field that tiles.
 
 mod noise;
 mod pattern;
@@ -9,7 +9,7 @@ pub mod texture;
 use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
 
-use super::species::{SpeciesError, require, require_colour};
+use crate::setting::{SettingError, require, require_colour};
 
 pub use texture::{BarkTextures, bark_textures};
 
@@ -86,7 +86,7 @@ impl Default for Bark {
 }
 
 impl Bark {
-    pub(super) fn validate(&self) -> Result<(), SpeciesError> {
+    pub(super) fn validate(&self) -> Result<(), SettingError> {
         require_colour("colour", self.colour)?;
         require_colour("furrow_colour", self.furrow_colour)?;
         require_colour("accent_colour", self.accent_colour)?;

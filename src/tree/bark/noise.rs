@@ -16,12 +16,6 @@ pub(super) fn unit(hash: u32) -> f32 {
     (hash & 0xffff) as f32 / 65_536.0
 }
 
-/// 0 below `low` to 1 above `high`, with level ends.
-pub(super) fn smoothstep(low: f32, high: f32, value: f32) -> f32 {
-    let share = ((value - low) / (high - low)).clamp(0.0, 1.0);
-    share * share * (3.0 - 2.0 * share)
-}
-
 /// Gradient noise with its lattice drawn up beforehand: the last column and row repeat the first.
 pub(super) struct Noise {
     size: Vec2,

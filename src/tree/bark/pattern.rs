@@ -1,12 +1,12 @@
-//! The patterns of bark: each answers, for a place on the tile, how high the surface is and what it shows there.
+//! The patterns of bark: for each place on the tile the height of the surface, and which part of the bark is there.
 
-use bevy::math::Vec2;
+use bevy::math::{FloatExt, Vec2};
 
 use crate::texture::fourier::{FourierTexture, FourierWaves};
 
 use super::{
     Bark, BarkPattern,
-    noise::{Cells, Noise, hash, smoothstep, unit},
+    noise::{Cells, Noise, hash, unit},
 };
 
 /// One texel's worth of bark.
@@ -81,7 +81,7 @@ impl<'a> Pattern<'a> {
         };
         let patches = self.patches[0].at(uv) + 0.5 * self.patches[1].at(uv) + 0.35 * grain;
         let covered = self.bark.lichen;
-        let spread = smoothstep(0.75 - covered, 1.15 - covered, patches) * f32::from(u8::from(covered > 0.0));
+        let spread = patches.smoothstep(0.75 - covered, 1.15 - covered) * f32::from(u8::from(covered > 0.0));
         point.lichen = point.lichen.max(spread * point.face);
         point
     }
@@ -91,11 +91,11 @@ impl<'a> Pattern<'a> {
         let bark = self.bark;
         let periods = Vec2::new(bark.plates_around as f32, bark.plates_along as f32);
         let wave = self.waves.as_ref().map_or(0.5, |waves| waves.at(uv * periods));
-        let face = smoothstep(0.0, bark.furrow_width, wave);
+        let face = wave.smoothstep(0.0, bark.furrow_width);
         Point {
             height: wave + 0.15 * bark.roughness * grain,
             face,
-            accent: smoothstep(0.55, 0.8, wave),
+            accent: wave.smoothstep(0.55, 0.8),
             lichen: 0.0,
             tone: 0.75 + 0.4 * wave + 0.3 * grain * bark.roughness,
         }
@@ -106,15 +106,15 @@ impl<'a> Pattern<'a> {
         let bark = self.bark;
         let warp = warp * bark.winding + Vec2::new(0.16 * fine, 0.25 * fine);
         let cell = self.cells.at(uv, warp);
-        let face = smoothstep(0.0, bark.furrow_width, cell.edge + 0.12 * grain * bark.roughness);
+        let face = (cell.edge + 0.12 * grain * bark.roughness).smoothstep(0.0, bark.furrow_width);
         let crack = self.flakes.at(uv, warp * 3.0 + Vec2::new(0.0, 0.4 * fine));
-        let split = smoothstep(0.0, 0.16, crack.edge);
+        let split = crack.edge.smoothstep(0.0, 0.16);
         let tone = unit(cell.hash >> 8);
         let height = face * (0.75 + 0.2 * tone) + bark.roughness * (0.13 * grain - 0.16 * (1.0 - split) * face);
         Point {
             height,
             face: face * (0.7 + 0.3 * split),
-            accent: 0.5 * smoothstep(0.35, 0.75, face) * (1.0 - smoothstep(0.75, 1.0, face)),
+            accent: 0.5 * face.smoothstep(0.35, 0.75) * (1.0 - face.smoothstep(0.75, 1.0)),
             lichen: 0.0,
             tone: 0.78 + 0.2 * tone + 0.3 * grain * bark.roughness + 0.12 * unit(crack.hash),
         }
@@ -125,17 +125,17 @@ impl<'a> Pattern<'a> {
         let bark = self.bark;
         let warp = warp * bark.winding + Vec2::new(0.10 * fine, 0.10 * fine) + 0.04 * grain;
         let cell = self.cells.at(uv, warp);
-        let face = smoothstep(0.0, bark.furrow_width, cell.edge);
+        let face = cell.edge.smoothstep(0.0, bark.furrow_width);
         let flake = self.flakes.at(uv, warp * 3.0 + 0.15 * grain);
         let level = unit(flake.hash >> 9);
         // Flakes come off from a plate's rim inward: the middle is the oldest, and highest.
         let terrace = 0.55 + 0.45 * (0.6 * level + 0.7 * cell.edge).min(1.0);
-        let lip = smoothstep(0.0, 0.12, flake.edge);
+        let lip = flake.edge.smoothstep(0.0, 0.12);
         let height = face * terrace - bark.roughness * (0.10 * (1.0 - lip) * face - 0.07 * grain);
         Point {
             height,
             face: face * (0.8 + 0.2 * lip),
-            accent: 0.8 * smoothstep(0.2, 0.9, level + 0.25 * fine + 0.15 * grain) * face,
+            accent: 0.8 * (level + 0.25 * fine + 0.15 * grain).smoothstep(0.2, 0.9) * face,
             lichen: 0.0,
             tone: 0.8 + 0.25 * unit(cell.hash >> 8) + 0.2 * (level - 0.5) + 0.25 * grain * bark.roughness,
         }
@@ -146,14 +146,14 @@ impl<'a> Pattern<'a> {
         let bark = self.bark;
         let warp = warp * bark.winding + Vec2::new(0.14 * fine + 0.06 * grain, 0.5 * fine);
         let cell = self.cells.at(uv, warp);
-        let face = smoothstep(0.0, bark.furrow_width, cell.edge + 0.06 * grain);
+        let face = (cell.edge + 0.06 * grain).smoothstep(0.0, bark.furrow_width);
         let lifted = (0.5 + 0.55 * cell.from.x).clamp(0.0, 1.0);
-        let ends = smoothstep(0.1, 0.6, cell.from.y.abs());
+        let ends = cell.from.y.abs().smoothstep(0.1, 0.6);
         let tone = unit(cell.hash >> 8);
         Point {
             height: face * (0.35 + 0.5 * lifted + 0.15 * ends) + bark.roughness * 0.16 * grain,
             face: face * (0.75 + 0.25 * lifted),
-            accent: smoothstep(0.55, 0.9, tone + 0.2 * fine) * (1.0 - lifted) * face,
+            accent: (tone + 0.2 * fine).smoothstep(0.55, 0.9) * (1.0 - lifted) * face,
             lichen: 0.0,
             tone: 0.75 + 0.22 * tone + 0.18 * lifted + 0.4 * grain * bark.roughness,
         }
@@ -165,22 +165,22 @@ impl<'a> Pattern<'a> {
         let sheet = 0.5 + 0.5 * (warp.y + 0.35 * grain);
         // Sheets end in ragged lines around the trunk: steps of a slow wave along it.
         let edge = ((uv.y * bark.plates_along as f32 + 0.35 * warp.x + 0.12 * fine + 0.05 * grain).fract() - 0.5).abs();
-        let torn = smoothstep(0.06, 0.0, edge) * smoothstep(0.0, 0.35, warp.y);
+        let torn = edge.smoothstep(0.06, 0.0) * warp.y.smoothstep(0.0, 0.35);
         let dash = self.flakes.at(uv, Vec2::new(0.3 * fine, 0.1 * fine));
         let size = unit(dash.hash >> 5);
         let long = (dash.from / Vec2::new(0.12 + 0.34 * size * size, 0.055 + 0.04 * size)).length();
-        let dash = smoothstep(1.1, 0.7, long + 0.2 * grain) * f32::from(u8::from(dash.hash & 7 < 4));
+        let dash = (long + 0.2 * grain).smoothstep(1.1, 0.7) * f32::from(u8::from(dash.hash & 7 < 4));
         let scar = self.cells.at(uv, 0.12 * Vec2::new(fine, warp.x) + 0.05 * grain);
         let width = 0.28 + 0.24 * unit(scar.hash >> 4);
         let diamond = scar.from.x.abs() / width + scar.from.y.abs() / (0.8 * width) + 0.22 * fine + 0.2 * grain;
-        let scar = smoothstep(1.0, 0.75, diamond) * f32::from(u8::from(scar.hash & 7 < 2));
+        let scar = diamond.smoothstep(1.0, 0.75) * f32::from(u8::from(scar.hash & 7 < 2));
         let dark = dash.max(scar);
         Point {
             height: 0.5 + 0.05 * sheet - 0.22 * dash - 0.3 * scar * (0.4 + 0.6 * grain.abs())
                 + 0.12 * torn
                 + bark.roughness * 0.05 * grain,
             face: 1.0 - dark,
-            accent: (0.85 * torn + 0.45 * smoothstep(0.1, 0.6, warp.y + 0.3 * fine)).min(1.0) * (1.0 - dark),
+            accent: (0.85 * torn + 0.45 * (warp.y + 0.3 * fine).smoothstep(0.1, 0.6)).min(1.0) * (1.0 - dark),
             lichen: 0.0,
             tone: 0.92 + 0.10 * grain + 0.06 * sheet,
         }
@@ -192,15 +192,15 @@ impl<'a> Pattern<'a> {
         let wrinkle = (std::f32::consts::TAU
             * (uv.y * (3 * bark.plates_along) as f32 + 0.8 * warp.x * bark.winding + 0.25 * fine))
             .sin();
-        let fold = smoothstep(0.75, 1.0, wrinkle) * smoothstep(0.0, 0.5, warp.y + 0.5 * fine);
+        let fold = wrinkle.smoothstep(0.75, 1.0) * (warp.y + 0.5 * fine).smoothstep(0.0, 0.5);
         let spot = self.spots.at(uv, 0.18 * Vec2::new(fine, warp.x) + 0.06 * grain);
         let radius = 0.15 + 0.42 * unit(spot.hash >> 6);
-        let crust = smoothstep(radius, radius - 0.09, spot.from.length() + 0.10 * grain);
+        let crust = (spot.from.length() + 0.10 * grain).smoothstep(radius, radius - 0.09);
         let lichen = crust * f32::from(u8::from(unit(spot.hash) < bark.lichen));
         Point {
             height: 0.5 + 0.12 * warp.x - 0.10 * fold + 0.05 * lichen + bark.roughness * 0.06 * grain,
             face: 1.0 - 0.55 * fold,
-            accent: smoothstep(0.0, 0.8, self.patches[0].at(uv) + 0.4 * fine),
+            accent: (self.patches[0].at(uv) + 0.4 * fine).smoothstep(0.0, 0.8),
             lichen: lichen * (0.75 + 0.25 * grain),
             tone: 0.92 + 0.12 * warp.y + 0.10 * grain,
         }

@@ -1,4 +1,4 @@
-//! Paints a bark: its pattern's heights become normals and occlusion, what it shows becomes colour.
+//! The textures of a bark: normals and occlusion from the heights of its pattern, colour from its parts.
 
 use bevy::math::Vec2;
 
@@ -6,7 +6,7 @@ use super::{
     Bark,
     pattern::{Pattern, Point},
 };
-use crate::texture::{Canvas, TextureData, blurred, linear, mix};
+use crate::texture::{LinearImage, TextureData, blurred, linear, mix};
 
 /// The textures of a bark; all tile in both directions, u around the branch, v along it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,10 +26,10 @@ pub(super) const SIZE: usize = 512;
 const OCCLUSION_REACH: usize = 9;
 /// Occlusion for a furrow as deep as a plate is wide.
 const OCCLUSION: f32 = 1.5;
-/// Occlusion that is painted into the colour, too: direct light is shaded in furrows as well.
-const PAINTED_OCCLUSION: f32 = 0.6;
+/// Share of the occlusion that darkens the colour as well, because furrows shade direct light, too.
+const OCCLUSION_IN_COLOUR: f32 = 0.6;
 
-/// Paints a bark.
+/// Renders the textures of a bark.
 #[must_use]
 pub fn bark_textures(bark: &Bark, seed: u64) -> BarkTextures {
     let pattern = Pattern::new(bark, seed as u32 ^ (seed >> 32) as u32);
@@ -42,14 +42,14 @@ pub fn bark_textures(bark: &Bark, seed: u64) -> BarkTextures {
     let heights: Vec<f32> = points.iter().map(|point| point.height).collect();
     let around = blurred(&heights, SIZE, OCCLUSION_REACH);
     let colours = Colours::of(bark);
-    let mut base_colour = Canvas::filled(SIZE, [0.0; 4]);
-    let mut normal = Canvas::filled(SIZE, [0.0; 4]);
-    let mut surface = Canvas::filled(SIZE, [0.0; 4]);
+    let mut base_colour = LinearImage::filled(SIZE, [0.0; 4]);
+    let mut normal = LinearImage::filled(SIZE, [0.0; 4]);
+    let mut surface = LinearImage::filled(SIZE, [0.0; 4]);
     let slope = bark.depth * SIZE as f32 / (2.0 * bark.plates_around as f32);
     for (index, point) in points.iter().enumerate() {
         let sunk = (around[index] - point.height).max(0.0);
         let open = 1.0 / (1.0 + OCCLUSION * (0.3 + bark.depth) * sunk * 2.0);
-        base_colour.texels[index] = colours.at(point, 1.0 - PAINTED_OCCLUSION * (1.0 - open));
+        base_colour.texels[index] = colours.at(point, 1.0 - OCCLUSION_IN_COLOUR * (1.0 - open));
         surface.texels[index] = [open, 0.95 - 0.12 * point.face, 0.0, 1.0];
         let lean = gradient(&heights, index % SIZE, index / SIZE) * slope;
         normal.texels[index] = [-lean.x, lean.y, 1.0, 1.0];

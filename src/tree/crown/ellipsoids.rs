@@ -8,20 +8,20 @@
 //! (u, v) = ((1 - |z|) sign x, (1 - |x|) sign z)        below,             both brought from -1..1 to 0..1
 //! ```
 //!
-//! The texture is a solid one, painted on that chart as on the sphere: it has no seam where the square's edges meet.
+//! The texture is a solid one, sampled on that chart as on the sphere: it has no seam where the square's edges meet.
 
 use bevy::math::{Quat, Vec2, Vec3};
 
-use super::gardner::GardnerCrown;
+use super::gardner_settings::GardnerCrown;
 use crate::{
     texture::{
-        Canvas, MASK_CUT_OFF, TextureData,
+        LinearImage, MASK_CUT_OFF, TextureData,
         fourier::{FourierTexture, threshold_above},
         linear, mix,
     },
     tree::{
-        leaf_mesh::LeafVertices,
         skeleton::{LeafCluster, Skeleton},
+        vertices::LeafVertices,
     },
 };
 
@@ -53,7 +53,7 @@ fn push_ellipsoid(crown: &GardnerCrown, skeleton: &Skeleton, cluster: &LeafClust
     let steps = 2 * crown.facets;
     let centre = cluster.anchor + cluster.axis * (0.5 * cluster.size_m);
     let semi_axes = Vec3::new(1.0, crown.slenderness(), 1.0) * (0.5 * cluster.size_m);
-    // Each ellipsoid is turned otherwise, so that they do not wear the same leaves on the same side.
+    // Each ellipsoid is turned otherwise, so that they do not show the same leaves on the same side.
     let turn = Quat::from_rotation_y(std::f32::consts::TAU * cluster.phase);
     for row in 0..=steps {
         for column in 0..=steps {
@@ -106,7 +106,7 @@ fn unfolded(uv: Vec2) -> Vec3 {
 
 pub(super) fn texture(crown: &GardnerCrown, seed: u64) -> TextureData {
     let colours = [linear(crown.shade_colour), linear(crown.colour)];
-    let mut canvas = Canvas::filled(SIZE, [0.0; 4]);
+    let mut canvas = LinearImage::filled(SIZE, [0.0; 4]);
     let settings = FourierTexture { seed: crown.texture.seed ^ seed, ..crown.texture };
     // Valid crowns have valid textures.
     let Ok(waves) = settings.waves() else { return canvas.into_mask_texture() };
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn no_part_of_the_sphere_is_pinched() {
+    fn the_chart_distorts_no_part_of_the_sphere_much() {
         let area = |uv: Vec2| {
             let step = 1e-3;
             let [a, b, c] = [uv, uv + Vec2::X * step, uv + Vec2::Y * step].map(unfolded);

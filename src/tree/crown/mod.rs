@@ -1,16 +1,18 @@
-//! Crowns as painters make them: the impression of foliage without its leaves.
+//! Crowns without single leaves, after the models of impressionist rendering.
 //!
-//! Two models. [`impressionist`] clothes a partial ellipsoid in some hundred triangles (Starling & Ashdown),
-//! [`gardner`] masses textured ellipsoids whose translucency grows towards their outline (Gardner). Both answer the
-//! same questions as the branching models do: a [`Skeleton`](super::skeleton::Skeleton) whose beams the wind moves,
-//! whose clusters are polygons or ellipsoids, vertices for them, and a texture. Their clusters hang in the air off
-//! their limbs, as a painter's do: each is carried rigidly by the place on the limb that is nearest.
+//! There are two. [`impressionist`] covers a partial ellipsoid with some hundred triangles (Starling & Ashdown).
+//! [`gardner`] combines textured ellipsoids whose translucency grows towards their outline (Gardner). Both give the
+//! same as the branching models do: a [`Skeleton`](super::skeleton::Skeleton) whose beams the wind moves,
+//! whose clusters are polygons or ellipsoids, vertices for them, and a texture. Their clusters lie
+//! beside their limbs: each is carried rigidly by the nearest place on a limb.
 
 mod billows;
+mod crown_wood;
 mod ellipsoids;
-mod frame;
 pub mod gardner;
+mod gardner_settings;
 pub mod impressionist;
+mod impressionist_settings;
 mod polygon_texture;
 mod polygons;
 mod profile;

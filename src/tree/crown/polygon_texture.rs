@@ -1,4 +1,4 @@
-//! The picture on a polygon of an impressionist crown.
+//! The texture on a polygon of an impressionist crown.
 //!
 //! The paper's triangles are plain. Here a Fourier texture may eat into their edges: with `b` the least barycentric
 //! coordinate (0 at an edge, 1/3 in the middle) and `F` the rank of the texture's value among all (0..1), a texel is
@@ -14,15 +14,15 @@
 use bevy::math::{Vec2, Vec3};
 use rand::{Rng, RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 
-use super::impressionist::{CrownForm, ImpressionistCrown};
+use super::impressionist_settings::{CrownForm, ImpressionistCrown};
 use crate::{
     texture::fourier::FourierTexture,
-    texture::{Canvas, TextureData, linear},
+    texture::{LinearImage, TextureData, linear},
 };
 
 /// Side of the texture, texels.
 const SIZE: usize = 256;
-/// Texels painted per texel of the texture, in each direction.
+/// Texels drawn per texel of the texture, in each direction.
 const OVERSAMPLING: usize = 2;
 /// Brightness of the dark parts of a polygon against the bright ones.
 const DAPPLE: f32 = 0.55;
@@ -31,19 +31,19 @@ const GROUND: f32 = 0.7;
 /// Forkings of a winter polygon's twigs.
 const FORKINGS: u32 = 4;
 
-pub(super) fn paint(crown: &ImpressionistCrown, seed: u64) -> TextureData {
+pub(super) fn polygon_texture(crown: &ImpressionistCrown, seed: u64) -> TextureData {
     let colour = linear(rgb(crown.hue_deg, crown.saturation, crown.greatest_brightness));
     let side = SIZE * OVERSAMPLING;
     let ground = colour.map(|channel| channel * GROUND);
-    let mut canvas = Canvas::filled(side, [ground[0], ground[1], ground[2], 0.0]);
+    let mut canvas = LinearImage::filled(side, [ground[0], ground[1], ground[2], 0.0]);
     match crown.form {
-        CrownForm::Winter => paint_twigs(&mut canvas, colour, seed),
-        CrownForm::Normal | CrownForm::Conifer => paint_leaves(&mut canvas, colour, crown.raggedness, seed),
+        CrownForm::Winter => draw_twigs(&mut canvas, colour, seed),
+        CrownForm::Normal | CrownForm::Conifer => draw_leaves(&mut canvas, colour, crown.raggedness, seed),
     }
     canvas.downsampled().into_mask_texture()
 }
 
-fn paint_leaves(canvas: &mut Canvas, colour: [f32; 3], raggedness: f32, seed: u64) {
+fn draw_leaves(canvas: &mut LinearImage, colour: [f32; 3], raggedness: f32, seed: u64) {
     let texture = FourierTexture { first_frequency_rad: 24.0, offset: 0.6, seed, ..FourierTexture::default() };
     // The settings are constant and valid; without waves the triangle would be plain.
     let Ok(waves) = texture.waves() else { return };
@@ -77,7 +77,7 @@ struct Twig {
     radius: f32,
 }
 
-fn paint_twigs(canvas: &mut Canvas, colour: [f32; 3], seed: u64) {
+fn draw_twigs(canvas: &mut LinearImage, colour: [f32; 3], seed: u64) {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut twigs: Vec<Twig> = [-0.3_f32, 0.0, 0.3]
         .into_iter()
@@ -107,7 +107,7 @@ impl Twig {
         [side(sign, 1.0), side(-sign, 0.55)]
     }
 
-    fn stroke(&self, canvas: &mut Canvas, colour: [f32; 3]) {
+    fn stroke(&self, canvas: &mut LinearImage, colour: [f32; 3]) {
         let side = canvas.width as f32;
         let to = self.from + self.direction * self.length;
         let low = (self.from.min(to) - self.radius).clamp(Vec2::ZERO, Vec2::ONE) * side;
@@ -139,7 +139,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hues_are_where_they_belong() {
+    fn hues_give_the_primary_colours() {
         assert_eq!(rgb(0.0, 1.0, 1.0), [1.0, 0.0, 0.0]);
         assert_eq!(rgb(60.0, 1.0, 0.5), [0.5, 0.5, 0.0]);
         assert_eq!(rgb(120.0, 1.0, 1.0), [0.0, 1.0, 0.0]);
@@ -155,16 +155,17 @@ mod tests {
 
     #[test]
     fn a_plain_triangle_fills_half_the_square_and_ragged_ones_less() {
-        let paint = |raggedness| paint(&ImpressionistCrown { raggedness, ..ImpressionistCrown::default() }, 3);
-        let shares = [0.0, 0.3, 0.6, 1.0].map(|raggedness| drawn_share(&paint(raggedness), 0));
+        let textured =
+            |raggedness| polygon_texture(&ImpressionistCrown { raggedness, ..ImpressionistCrown::default() }, 3);
+        let shares = [0.0, 0.3, 0.6, 1.0].map(|raggedness| drawn_share(&textured(raggedness), 0));
         assert!((shares[0] - 0.5).abs() < 0.005, "{shares:?}");
         assert!(shares.windows(2).all(|pair| pair[1] < pair[0]) && shares[3] > 0.2, "{shares:?}");
     }
 
     #[test]
-    fn distance_does_not_thin_polygons() {
+    fn mips_keep_the_coverage_of_polygons() {
         for form in [CrownForm::Normal, CrownForm::Winter, CrownForm::Conifer] {
-            let texture = paint(&ImpressionistCrown::of_form(form), 3);
+            let texture = polygon_texture(&ImpressionistCrown::of_form(form), 3);
             let full = drawn_share(&texture, 0);
             assert!(full > 0.05, "{form:?}: {full}");
             // Down to 16 x 16 texels, of which one is 0.4%.

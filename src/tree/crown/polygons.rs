@@ -7,19 +7,20 @@ use rand::{Rng, RngExt};
 
 use super::{
     billows::Billows,
-    frame::{Frame, limb_targets, nearest},
-    impressionist::{CrownForm, ImpressionistCrown},
+    crown_wood::{CrownWood, limb_targets, nearest},
+    impressionist_settings::{CrownForm, ImpressionistCrown},
     profile::Profile,
 };
-use crate::tree::{
-    foliage::CLUSTERS_LIMIT,
-    growth::pipes,
-    leaf_mesh::LeafVertices,
-    skeleton::{LeafCluster, Skeleton, SkeletonBeam},
+use crate::{
+    sequence::r2,
+    tree::{
+        foliage::CLUSTERS_LIMIT,
+        growth::pipes,
+        skeleton::{LeafCluster, Skeleton, SkeletonBeam},
+        vertices::LeafVertices,
+    },
 };
 
-/// Steps of Roberts' R2 sequence: 1/p and 1/p^2 with p^3 = p + 1.
-const R2: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 /// How far out limbs reach as a share of the way from the core to the surface: far enough that polygons move with their
 /// limb and not with the trunk, and hidden in summer.
 const SUMMER_REACH: f32 = 0.68;
@@ -45,10 +46,10 @@ const SHRINKINGS: u32 = 40;
 
 pub(super) fn grow(crown: &ImpressionistCrown, random: &mut impl Rng) -> Skeleton {
     let profile = crown.profile();
-    let mut beams = frame(crown, &profile, random);
+    let mut beams = grow_wood(crown, &profile, random);
     // In summer limbs carry polygons and the trunk none; of a winter tree, what is farthest out.
     let order = if crown.form == CrownForm::Winter && crown.branches > 0 { 2 } else { 1 };
-    let mut painter = Painter {
+    let mut placer = PolygonPlacer {
         crown,
         profile,
         billows: Billows::new(&profile, crown.distortion, crown.form == CrownForm::Conifer, random.random()),
@@ -56,20 +57,15 @@ pub(super) fn grow(crown: &ImpressionistCrown, random: &mut impl Rng) -> Skeleto
         carriers: (0_u32..).zip(&beams).filter(|(_, beam)| beam.order >= order).map(|(index, _)| index).collect(),
         beams: &beams,
     };
-    let places: Vec<Vec3> = (0..RANKED_PLACES).map(|index| painter.place(even([0.0; 2], index)).1).collect();
-    painter.billows.rank_among(&places);
-    let clusters = painter.polygons(random);
+    let places: Vec<Vec3> = (0..RANKED_PLACES).map(|index| placer.place(r2([0.0; 2], index)).1).collect();
+    placer.billows.rank_among(&places);
+    let clusters = placer.polygons(random);
     pipes::assign_radii(&mut beams, &clusters, crown.trunk_radius_m, PIPE_EXPONENT);
     Skeleton { beams, clusters, envelope: crown.envelope(), trunk: crown.trunk() }
 }
 
-/// Place `index` of the sequence from `start`, evenly spread over the unit square.
-fn even(start: [f64; 2], index: usize) -> [f32; 2] {
-    [0, 1].map(|axis: usize| (start[axis] + R2[axis] * index as f64).fract() as f32)
-}
-
 /// Trunk, limbs and branches.
-fn frame(crown: &ImpressionistCrown, profile: &Profile, random: &mut impl Rng) -> Vec<SkeletonBeam> {
+fn grow_wood(crown: &ImpressionistCrown, profile: &Profile, random: &mut impl Rng) -> Vec<SkeletonBeam> {
     let (trunk_top, rise, reach) = match crown.form {
         CrownForm::Normal => (0.72, 0.7, SUMMER_REACH),
         CrownForm::Winter => (0.7, 0.85, WINTER_REACH),
@@ -77,13 +73,13 @@ fn frame(crown: &ImpressionistCrown, profile: &Profile, random: &mut impl Rng) -
     };
     let trunk_top_m = profile.base_m + trunk_top * profile.height_m();
     let lowest_limb_m = profile.base_m.max(0.12 * crown.height_m);
-    let mut frame = Frame::with_trunk(trunk_top_m, lowest_limb_m, rise);
+    let mut wood = CrownWood::with_trunk(trunk_top_m, lowest_limb_m, rise);
     for target in limb_targets(profile, crown.limbs, reach, random) {
-        let limb = frame.limb(target);
+        let limb = wood.limb(target);
         let sides = side_targets(crown.branches, target, profile, random);
-        frame.branches(limb, &sides);
+        wood.branches(limb, &sides);
     }
-    frame.beams
+    wood.beams
 }
 
 /// Where the branches of a limb end: around its own end, left and right by turns.
@@ -110,7 +106,7 @@ fn outwards(profile: &Profile, core: Vec3, direction: Vec3, reach: f32) -> Vec3 
     core + direction * (reach * inside_m)
 }
 
-struct Painter<'a> {
+struct PolygonPlacer<'a> {
     crown: &'a ImpressionistCrown,
     profile: Profile,
     billows: Billows,
@@ -120,8 +116,8 @@ struct Painter<'a> {
     beams: &'a [SkeletonBeam],
 }
 
-/// A polygon before it has found its place: everything that is drawn by lot, so that settings do not change the lots.
-struct Lot {
+/// The random numbers of a polygon. They are drawn first, so that settings do not change them.
+struct RandomNumbers {
     /// Place on the surface, both 0 to 1.
     even: [f32; 2],
     inclination: f32,
@@ -131,45 +127,45 @@ struct Lot {
     tint: f32,
 }
 
-impl Painter<'_> {
+impl PolygonPlacer<'_> {
     fn polygons(&self, random: &mut impl Rng) -> Vec<LeafCluster> {
         let start: [f64; 2] = [random.random(), random.random()];
         (0..(self.crown.polygons as usize).min(CLUSTERS_LIMIT))
             .filter_map(|index| {
                 let mut signed = || random.random_range(-1.0_f32..=1.0);
-                let lot = Lot {
-                    even: even(start, index),
+                let numbers = RandomNumbers {
+                    even: r2(start, index),
                     inclination: signed(),
                     heading: signed(),
                     spin: signed(),
                     phase: random.random(),
                     tint: random.random(),
                 };
-                self.polygon(&lot)
+                self.polygon(&numbers)
             })
             .collect()
     }
 
-    /// The polygon of a lot, unless a gap is there.
-    fn polygon(&self, lot: &Lot) -> Option<LeafCluster> {
+    /// The polygon of these numbers, unless a gap is there.
+    fn polygon(&self, numbers: &RandomNumbers) -> Option<LeafCluster> {
         let crown = self.crown;
-        let (branch, surface) = self.place(lot.even);
+        let (branch, surface) = self.place(numbers.even);
         let depth = self.billows.depth(surface);
         if depth >= 1.0 - crown.gaps {
             return None;
         }
-        let inclination_deg = crown.inclination_deg + crown.inclination_spread_deg * lot.inclination;
-        let heading_rad = surface.z.atan2(surface.x) + crown.azimuth_spread_deg.to_radians() * lot.heading;
-        let (normal, axis) = self.lie(inclination_deg.to_radians(), heading_rad, lot.spin);
+        let inclination_deg = crown.inclination_deg + crown.inclination_spread_deg * numbers.inclination;
+        let heading_rad = surface.z.atan2(surface.x) + crown.azimuth_spread_deg.to_radians() * numbers.heading;
+        let (normal, axis) = self.orientation(inclination_deg.to_radians(), heading_rad, numbers.spin);
         let breadth = self.profile.breadth_share(surface.y);
         let size_m = crown.least_size_m + (crown.greatest_size_m - crown.least_size_m) * breadth;
         let core = self.profile.core(surface);
-        // Twigs do not hang in the air: roughness leaves them on their branch.
+        // Roughness does not move twigs off their branch.
         let rough = if branch.is_some() { surface } else { surface.lerp(core, crown.roughness * depth) };
-        let (anchor, size_m) = self.settle(rough, core, axis, normal, size_m);
+        let (anchor, size_m) = self.move_inside(rough, core, axis, normal, size_m);
         let (beam, at) = branch.unwrap_or_else(|| nearest(self.beams, self.order, anchor));
-        let tint = OWN_TINT * lot.tint + (1.0 - OWN_TINT) * (1.0 - depth);
-        Some(LeafCluster { beam, at, anchor, axis, normal, size_m, phase: lot.phase, depth, tint })
+        let tint = OWN_TINT * numbers.tint + (1.0 - OWN_TINT) * (1.0 - depth);
+        Some(LeafCluster { beam, at, anchor, axis, normal, size_m, phase: numbers.phase, depth, tint })
     }
 
     /// The point of the outline that belongs to a place of the sequence; in winter a point of a branch inside the
@@ -192,7 +188,7 @@ impl Painter<'_> {
 
     /// Unit normal and axis of a polygon. The axis is the steepest line in its plane, turned by the polygon's spin: up
     /// in general; a bough's anchor is its tip, so that it too lies below; twigs lean the other way and rise outwards.
-    fn lie(&self, inclination_rad: f32, heading_rad: f32, spin: f32) -> (Vec3, Vec3) {
+    fn orientation(&self, inclination_rad: f32, heading_rad: f32, spin: f32) -> (Vec3, Vec3) {
         let winter = self.crown.form == CrownForm::Winter;
         let lean = if winter { -inclination_rad.sin() } else { inclination_rad.sin() };
         let normal = Vec3::new(lean * heading_rad.cos(), inclination_rad.cos(), lean * heading_rad.sin());
@@ -204,7 +200,7 @@ impl Painter<'_> {
 
     /// Moves a polygon inwards until it is just inside the outline, and makes it smaller where it is too large for
     /// that. Twigs stay on their branch.
-    fn settle(&self, anchor: Vec3, core: Vec3, axis: Vec3, normal: Vec3, size_m: f32) -> (Vec3, f32) {
+    fn move_inside(&self, anchor: Vec3, core: Vec3, axis: Vec3, normal: Vec3, size_m: f32) -> (Vec3, f32) {
         let steps = if self.crown.form == CrownForm::Winter { 0 } else { INWARD_STEPS };
         let mut size_m = size_m;
         for _ in 0..SHRINKINGS {

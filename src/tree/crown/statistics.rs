@@ -1,10 +1,10 @@
-//! What an impressionist crown has become, measured on its finished vertices.
+//! Statistics of an impressionist crown, measured on its vertices.
 
 use bevy::math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::impressionist::ImpressionistCrown;
-use crate::tree::leaf_mesh::LeafVertices;
+use crate::tree::vertices::LeafVertices;
 
 /// How the polygons of a crown lie. All is measured on the corners that are drawn, not taken from the settings; zeros
 /// for a crown without polygons.

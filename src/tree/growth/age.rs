@@ -1,4 +1,4 @@
-//! Age: how large and how branchy a tree is when it is so old.
+//! Age: the size of a tree at each age, as shares of its mature size.
 //!
 //! Sizes follow the curve of Chapman and Richards (Richards 1959, J. Exp. Bot. 10, 290; Pienaar & Turnbull 1973,
 //! Forest Science 19, 2), the usual curve of height over age in forestry:
@@ -16,7 +16,7 @@
 use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
 
-use crate::tree::species::{SpeciesError, require};
+use crate::setting::{SettingError, require};
 
 /// How a species ages.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
@@ -57,7 +57,7 @@ impl Age {
     /// Youngest tree that is grown, years.
     pub const YOUNGEST_YEARS: f32 = 1.0;
 
-    pub(in crate::tree) fn validate(&self) -> Result<(), SpeciesError> {
+    pub(in crate::tree) fn validate(&self) -> Result<(), SettingError> {
         require("mature_years", self.mature_years, 2.0..=2000.0)?;
         require("oldest_years", self.oldest_years, self.mature_years..=5000.0)?;
         require("height_rate_per_year", self.height_rate_per_year, 0.001..=1.0)?;
@@ -67,7 +67,7 @@ impl Age {
         let oldest = self.stage(self.oldest_years);
         let bounded = |field, rate, share: f32| {
             let allowed = "high enough that the oldest tree is at most 4 times as large as the mature one";
-            if share <= LARGEST_SHARE { Ok(()) } else { Err(SpeciesError::out_of_range(field, rate, allowed)) }
+            if share <= LARGEST_SHARE { Ok(()) } else { Err(SettingError::new(field, rate, allowed)) }
         };
         bounded("height_rate_per_year", self.height_rate_per_year, oldest.height)?;
         bounded("girth_rate_per_year", self.girth_rate_per_year, oldest.girth)
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn height_levels_off_while_girth_goes_on() {
+    fn girth_grows_on_after_height_levels_off() {
         let age = Age::default();
         let [mature, old] = [age.mature_years, age.oldest_years].map(|years| age.stage(years));
         // The limits of the curve, from its asymptote A = 1 / (1 - exp(-k T))^p.
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn ages_beyond_life_are_clamped() {
+    fn ages_out_of_range_are_clamped() {
         let age = Age::default();
         for (asked, grown) in [(-3.0, 1.0), (0.0, 1.0), (f32::INFINITY, 500.0), (f32::NAN, 120.0), (77.0, 77.0)] {
             assert_eq!(age.stage(asked).years, grown);
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn curves_that_would_run_away_are_refused() {
+    fn curves_that_grow_too_far_are_refused() {
         let age = Age { mature_years: 10.0, oldest_years: 1000.0, ..Age::default() };
         let error = age.validate().unwrap_err().to_string();
         assert!(error.starts_with("`height_rate_per_year` is 0.02"), "{error}");

@@ -23,11 +23,12 @@ use serde::{Deserialize, Serialize};
 use super::{
     age::Stage,
     envelope::{Envelope, EnvelopeShape},
-    grower::{BEAMS_LIMIT, Bud, Grower, Habit, SHORTEST_BEAM_M, Wood, leave, lerp},
+    grower::{BEAMS_LIMIT, Bud, Grower, GrownBranches, SHORTEST_BEAM_M, leave, lerp},
+    habit::Habit,
     phyllotaxis::Phyllotaxis,
-    reeves::Trunk,
+    trunk::Trunk,
 };
-use crate::tree::species::{SpeciesError, require};
+use crate::setting::{SettingError, require};
 
 /// Most branchings one after the other.
 pub const GENERATIONS_LIMIT: u32 = 12;
@@ -66,7 +67,7 @@ pub struct AonoKunii {
 #[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Attraction {
-    /// Whither; of any length but none.
+    /// Direction of the pull; of any length but zero.
     pub towards: [f32; 3],
     /// How strongly, 0 to 1; negative drives shoots away (their inhibitor), down to -1.
     pub strength: f32,
@@ -155,7 +156,7 @@ impl Default for Shoot {
 }
 
 impl AonoKunii {
-    pub(super) fn validate(&self) -> Result<(), SpeciesError> {
+    pub(in crate::tree) fn validate(&self) -> Result<(), SettingError> {
         self.trunk.validate(120.0).map_err(|error| error.inside("trunk"))?;
         require("trunk.stems", self.trunk.stems as f32, 1.0..=1.0)?;
         self.branching.validate().map_err(|error| error.inside("branching"))?;
@@ -179,7 +180,7 @@ impl AonoKunii {
         self.sunlight.vector() + self.wind.vector() - Vec3::Y * self.gravity
     }
 
-    pub(super) fn grow(&self, stage: &Stage, random: &mut impl Rng) -> Wood {
+    pub(in crate::tree) fn grow(&self, stage: &Stage, random: &mut impl Rng) -> GrownBranches {
         let generations = self.generations_at(stage);
         let trunk = self.trunk.scaled(stage.height, stage.girth);
         let ratio = self.branching.axis_length();
@@ -195,16 +196,16 @@ impl AonoKunii {
         let tips = beams.iter().skip(1).map(|beam| beam.path(1.0));
         let own = beams.iter().take(1).map(|beam| beam.path(1.0));
         let envelope = Envelope::around(EnvelopeShape::Ellipsoid, own.chain(tips));
-        Wood { beams, envelope, trunk_radius_m: trunk.radius_m }
+        GrownBranches { beams, envelope, trunk_radius_m: trunk.radius_m }
     }
 }
 
 impl Attraction {
-    fn validate(&self) -> Result<(), SpeciesError> {
+    fn validate(&self) -> Result<(), SettingError> {
         require("strength", self.strength, -1.0..=1.0)?;
         let length = Vec3::from_array(self.towards).length();
         require("towards", length, 1e-3..=1e3).map_err(|_| {
-            SpeciesError::out_of_range("towards", format!("{:?}", self.towards), "a direction of length 0.001 to 1000")
+            SettingError::new("towards", format!("{:?}", self.towards), "a direction of length 0.001 to 1000")
         })
     }
 
@@ -214,7 +215,7 @@ impl Attraction {
 }
 
 impl Branching {
-    fn validate(&self) -> Result<(), SpeciesError> {
+    fn validate(&self) -> Result<(), SettingError> {
         match self {
             Self::Monopodial { axis, lateral, arrangement } => {
                 axis.validate().map_err(|error| error.inside("axis"))?;
@@ -263,7 +264,7 @@ impl Branching {
 }
 
 impl Shoot {
-    fn validate(&self) -> Result<(), SpeciesError> {
+    fn validate(&self) -> Result<(), SettingError> {
         require("angle_deg", self.angle_deg, 0.0..=150.0)?;
         require("length", self.length, 0.1..=1.2)?;
         require("diameter", self.diameter, 0.1..=1.0)

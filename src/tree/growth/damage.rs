@@ -8,9 +8,9 @@ use bevy::reflect::Reflect;
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 
-use crate::tree::{
-    skeleton::{LeafCluster, SkeletonBeam, continuations},
-    species::{SpeciesError, require},
+use crate::{
+    setting::{SettingError, require},
+    tree::skeleton::{LeafCluster, SkeletonBeam, continuations},
 };
 
 /// What has happened to the trees of a species.
@@ -34,14 +34,14 @@ impl Default for Damage {
 }
 
 impl Damage {
-    pub(in crate::tree) fn validate(&self) -> Result<(), SpeciesError> {
+    pub(in crate::tree) fn validate(&self) -> Result<(), SettingError> {
         require("broken_trunks", self.broken_trunks, 0.0..=1.0)?;
         require("broken_branches", self.broken_branches, 0.0..=1.0)?;
         require("remains", self.remains, 0.02..=1.0)
     }
 
     /// Breaks branches of a tree whose beams have their radii.
-    pub(in crate::tree) fn befall(
+    pub(in crate::tree) fn apply(
         &self,
         beams: &mut Vec<SkeletonBeam>,
         clusters: &mut Vec<LeafCluster>,
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_broken_beam_runs_as_the_whole_one_did() {
+    fn a_broken_beam_keeps_the_path_of_the_whole_one() {
         let whole = bowed();
         let broken = shortened(&whole, 0.3);
         for s in [0.0, 0.2, 0.7, 1.0] {
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn what_grew_beyond_the_break_is_gone_and_the_rest_stays_where_it_was() {
+    fn a_break_removes_all_beyond_it_and_moves_nothing_else() {
         let trunk = bowed();
         let child = |attach: f32| SkeletonBeam {
             parent: Some(0),

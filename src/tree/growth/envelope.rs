@@ -21,7 +21,7 @@
 use bevy::{math::Vec3, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 
-use crate::tree::species::{SpeciesError, require};
+use crate::setting::{SettingError, require};
 
 /// What bounds a crown.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
@@ -61,7 +61,7 @@ impl Default for Envelope {
 }
 
 impl Envelope {
-    pub(super) fn validate(&self) -> Result<(), SpeciesError> {
+    pub(super) fn validate(&self) -> Result<(), SettingError> {
         require("top_m", self.top_m, 0.5..=120.0)?;
         require("radius_m", self.radius_m, 0.1..=60.0)?;
         require("base_m", self.base_m, 0.0..=0.95 * self.top_m)
@@ -279,7 +279,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(200))]
 
         #[test]
-        fn rays_leave_where_a_walker_leaves(
+        fn exit_distances_agree_with_marching_along_the_ray(
             shape in shapes(),
             height in 0.0_f32..0.95,
             azimuth in 0.0_f32..std::f32::consts::TAU,
@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_out_is_a_unit_vector_even_at_the_middle() {
+    fn outward_is_a_unit_vector_even_in_the_middle() {
         for shape in SHAPES {
             let envelope = Envelope { shape, ..Envelope::default() };
             for point in [envelope.centre(), Vec3::ZERO, Vec3::new(3.0, 7.0, -2.0)] {

@@ -1,11 +1,11 @@
-//! What all generators share: how a bud becomes a chain of beams.
+//! Grows buds into branches, chains of beams: shared by all generators.
 
 use std::ops::Range;
 
 use bevy::math::Vec3;
 use rand::{Rng, RngExt};
 
-use super::envelope::Envelope;
+use super::{envelope::Envelope, habit::Habit};
 use crate::tree::skeleton::SkeletonBeam;
 
 /// Most beams of one tree: growth ends there, lower orders first.
@@ -17,21 +17,13 @@ const SHORTEST_SEGMENT_SHARE: f32 = 0.3;
 /// How much a beam's middle wanders off its chord, as a share of the turns between beams.
 const BOW_SHARE: f32 = 0.15;
 
-/// What growth makes.
-pub(in crate::tree) struct Wood {
+/// The branches of an individual, still without leaves; radii are found with the leaves.
+pub(in crate::tree) struct GrownBranches {
     pub beams: Vec<SkeletonBeam>,
     /// The envelope at this individual's size.
     pub envelope: Envelope,
     /// Radius of the trunk at the ground, m: what the pipe model starts from.
     pub trunk_radius_m: f32,
-}
-
-/// How a branch runs from its bud.
-pub(super) struct Habit {
-    pub segments: u32,
-    pub crook_rad: f32,
-    pub rise: f32,
-    pub sag: f32,
 }
 
 /// A grown branch: a run of beams, each continuing the one before.

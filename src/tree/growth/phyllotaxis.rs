@@ -3,7 +3,7 @@
 use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
 
-use crate::tree::species::{SpeciesError, require};
+use crate::setting::{SettingError, require};
 
 /// Arrangement of leaves, or of the branches from their axils, on a shoot (Aono & Kunii 1984: alternate, opposite,
 /// whorled).
@@ -24,7 +24,7 @@ pub enum Phyllotaxis {
 pub const GOLDEN_ANGLE_DEG: f32 = 137.507_77;
 
 impl Phyllotaxis {
-    pub(in crate::tree) fn validate(&self) -> Result<(), SpeciesError> {
+    pub(in crate::tree) fn validate(&self) -> Result<(), SettingError> {
         match self {
             Self::Whorled(count) => require("Whorled", *count as f32, 3.0..=12.0),
             Self::Spiral | Self::Alternate | Self::Opposite => Ok(()),
@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn whorls_stand_in_the_gaps_of_the_one_before() {
+    fn whorls_lie_in_the_gaps_of_the_whorl_before() {
         for arrangement in [Phyllotaxis::Opposite, Phyllotaxis::Whorled(3), Phyllotaxis::Whorled(8)] {
             let count = arrangement.per_node();
             let gap_deg = 360.0 / count as f32;
@@ -78,7 +78,7 @@ mod tests {
 
     /// No leaf of a spiral stands right above another for many turns; in two ranks every other does.
     #[test]
-    fn a_spiral_shades_no_leaf_below() {
+    fn no_two_leaves_of_a_spiral_are_above_one_another() {
         let apart = |a: f32, b: f32| ((a - b + 180.0).rem_euclid(360.0) - 180.0).abs();
         let spiral = Phyllotaxis::Spiral;
         let nearest = (1..13).map(|node| apart(spiral.roll_deg(node, 0), spiral.roll_deg(0, 0)));

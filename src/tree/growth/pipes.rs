@@ -1,4 +1,4 @@
-//! How thick the wood is: the pipe model.
+//! The radii of the wood, by the pipe model.
 //!
 //! Shinozaki et al. (1964): a tree is a bundle of unit pipes, one from each bunch of leaves down to the root, so a
 //! cross-section counts the leaves beyond it. With Murray's exponent `e` (2 is Leonardo's rule of equal areas), a

@@ -1,3 +1,5 @@
+//! Fillets between a branch and its parent, against plain geometry.
+
 use super::*;
 use std::f32::consts::FRAC_PI_2;
 
@@ -55,7 +57,7 @@ fn a_fillet_leads_from_the_parents_surface_and_normal_to_the_branchs() {
 }
 
 #[test]
-fn a_foot_moves_with_the_place_on_which_it_stands() {
+fn the_foot_of_a_fillet_is_bound_to_the_place_beside_it() {
     let limb = limb();
     assert!((limb.place(Vec3::new(0.3, 3.0, 0.0)) - 0.75).abs() < 1e-6);
     assert_eq!(limb.place(Vec3::new(0.3, 9.0, 0.0)), 1.0);

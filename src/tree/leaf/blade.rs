@@ -1,11 +1,15 @@
-//! One leaf as a field: distance to its margin, veins and relief on a grid, looked up while it is stamped.
+//! One leaf as a field: distance to its margin, veins and relief on a grid, looked up while it is drawn.
 //!
 //! A distance can be interpolated where coverage cannot (Green, "Improved alpha-tested magnification", 2007), so that
 //! one small grid serves leaves of all sizes, turns and bends.
 
 use bevy::math::Vec2;
 
-use super::{Leaf, outline, venation};
+use super::{
+    outline,
+    settings::{Leaf, LeafShape},
+    venation,
+};
 
 /// What is known of a place on a leaf.
 #[derive(Clone, Copy, Debug, Default)]
@@ -105,7 +109,7 @@ impl Blade {
 
 fn place(leaf: &Leaf, margin: &[Vec2], veins: &[venation::Vein], point: Vec2) -> Place {
     let blade = outline::distance(margin, point);
-    let start = if leaf.shape == outline::LeafShape::Palmate { outline::PALMATE_CENTRE } else { 0.05 };
+    let start = if leaf.shape == LeafShape::Palmate { outline::PALMATE_CENTRE } else { 0.05 };
     let stalk = venation::Vein { from: Vec2::new(start, 0.0), to: Vec2::new(-leaf.stalk, 0.0), radius: STALK_RADIUS };
     let on_stalk = if leaf.stalk > 0.0 { STALK_RADIUS * (1.0 - stalk.off(point) * 0.8) } else { f32::NEG_INFINITY };
     let nearest = veins.iter().map(|vein| vein.off(point)).fold(f32::INFINITY, f32::min);

@@ -1,114 +1,14 @@
-//! Leaves: how they are shaped, veined, coloured and set on their twig, and the picture of a spray of them.
+//! Leaves: how they are shaped, veined, coloured and set on their twig, and the textures of a spray of them.
 //!
-//! [`outline`] draws the margin of one leaf, `venation` its veins, `blade` turns both into a field that can be
-//! stamped at any size, `spray` sets leaves on a twig, and [`texture`] paints them.
+//! `outline` draws the margin of one leaf, `venation` its veins, `blade` turns both into a field that can be
+//! drawn at any size, `spray` sets leaves on a twig, and [`texture`] draws them.
 
-pub(super) mod blade;
-pub mod outline;
-pub(super) mod spray;
+mod blade;
+mod outline;
+mod settings;
+mod spray;
 pub mod texture;
-pub(super) mod venation;
+mod venation;
 
-use bevy::reflect::Reflect;
-use serde::{Deserialize, Serialize};
-
-use super::species::{SpeciesError, require, require_colour};
-
-pub use outline::{LeafMargin, LeafShape};
+pub use settings::{Leaf, LeafArrangement, LeafMargin, LeafShape};
 pub use texture::{LeafTextures, leaf_textures};
-
-/// The leaves of a spray.
-#[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Leaf {
-    /// Its shape.
-    pub shape: LeafShape,
-    /// Its margin; needles have none.
-    pub margin: LeafMargin,
-    /// How leaves are set on a shoot.
-    pub arrangement: LeafArrangement,
-    /// Colour of a grown leaf, sRGB 0 to 1.
-    pub colour: [f32; 3],
-    /// Colour of a young one, sRGB 0 to 1.
-    pub young_colour: [f32; 3],
-    /// Colour of the underside, sRGB 0 to 1.
-    pub back_colour: [f32; 3],
-    /// Colour of the twig, sRGB 0 to 1.
-    pub twig_colour: [f32; 3],
-    /// Length of a leaf as a share of the spray's, 0.01 to 0.6.
-    pub length: f32,
-    /// Width of a leaf as a share of its length, 0.02 to 1.2.
-    pub width: f32,
-    /// Stalk of a leaf as a share of its length, 0 to 1.
-    pub stalk: f32,
-    /// Pairs of side veins, 0 to 24.
-    pub vein_pairs: u32,
-    /// Angle of the side veins to the midrib, degrees: 10 to 90.
-    pub vein_angle_deg: f32,
-    /// How much leaves turn out of the picture's plane and bend sideways, 0 to 1.
-    pub curl: f32,
-    /// Side shoots of the spray, 0 to 40.
-    pub shoots: u32,
-    /// Distance between leaves along a shoot as a share of a leaf's length, 0.05 to 2.
-    pub spacing: f32,
-    /// How mottled leaves are by a Fourier texture, as Zaharia colours his: 0 to 1.
-    pub mottle: f32,
-    /// Share of a shoot, from its root, that bears no leaves: 0 to 0.9.
-    pub bare: f32,
-}
-
-/// How leaves are set on a shoot.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect, Serialize, Deserialize)]
-pub enum LeafArrangement {
-    /// One at a node, left and right by turns: oak, beech, birch, willow.
-    #[default]
-    Alternate,
-    /// Two at a node, face to face: maple, ash.
-    Opposite,
-    /// Three at a node: left, right and over the shoot.
-    Whorled,
-}
-
-impl Default for Leaf {
-    /// A pedunculate oak's.
-    fn default() -> Self {
-        Self {
-            shape: LeafShape::Lobed,
-            margin: LeafMargin::Entire,
-            arrangement: LeafArrangement::Alternate,
-            colour: [0.22, 0.36, 0.11],
-            young_colour: [0.42, 0.52, 0.16],
-            back_colour: [0.40, 0.48, 0.27],
-            twig_colour: [0.30, 0.25, 0.17],
-            length: 0.2,
-            width: 0.56,
-            stalk: 0.08,
-            vein_pairs: 6,
-            vein_angle_deg: 45.0,
-            curl: 0.5,
-            shoots: 7,
-            spacing: 0.42,
-            mottle: 0.12,
-            bare: 0.25,
-        }
-    }
-}
-
-impl Leaf {
-    pub(super) fn validate(&self) -> Result<(), SpeciesError> {
-        require_colour("colour", self.colour)?;
-        require_colour("young_colour", self.young_colour)?;
-        require_colour("back_colour", self.back_colour)?;
-        require_colour("twig_colour", self.twig_colour)?;
-        require("length", self.length, 0.01..=0.6)?;
-        require("width", self.width, 0.02..=1.2)?;
-        require("stalk", self.stalk, 0.0..=1.0)?;
-        require("vein_pairs", self.vein_pairs as f32, 0.0..=24.0)?;
-        require("vein_angle_deg", self.vein_angle_deg, 10.0..=90.0)?;
-        require("curl", self.curl, 0.0..=1.0)?;
-        require("shoots", self.shoots as f32, 0.0..=40.0)?;
-        require("spacing", self.spacing, 0.05..=2.0)?;
-        require("mottle", self.mottle, 0.0..=1.0)?;
-        require("bare", self.bare, 0.0..=0.9)
-    }
-}

@@ -12,44 +12,11 @@
 
 use std::f32::consts::{PI, TAU};
 
-use bevy::{math::Vec2, reflect::Reflect};
-use serde::{Deserialize, Serialize};
+use bevy::math::Vec2;
 
-use super::Leaf;
-
-/// Outlines of leaves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect, Serialize, Deserialize)]
-pub enum LeafShape {
-    /// Widest beyond the middle, with rounded lobes: an oak's.
-    #[default]
-    Lobed,
-    /// Egg-shaped, widest a little below the middle: a beech's.
-    Ovate,
-    /// Triangular to egg-shaped, widest near the base, drawn out at the tip: a birch's.
-    Triangular,
-    /// Lance-shaped: a willow's.
-    Lanceolate,
-    /// Five lobes about the end of the stalk: a maple's.
-    Palmate,
-    /// A broad triangle with a straight base: a poplar's.
-    Deltoid,
-    /// Widest beyond the middle, blunt with a short tip: a hazel's or an alder's.
-    Obovate,
-    /// Single needles: a spruce's or a fir's.
-    Needle,
-    /// Needles in pairs: a Scots pine's.
-    NeedlePair,
-    /// Tufts of needles on short shoots: a larch's.
-    NeedleRosette,
-}
+use super::settings::{Leaf, LeafMargin, LeafShape};
 
 impl LeafShape {
-    /// Whether it is one of the needles.
-    #[must_use]
-    pub fn is_needle(self) -> bool {
-        matches!(self, Self::Needle | Self::NeedlePair | Self::NeedleRosette)
-    }
-
     /// The exponents a and b of the half width.
     fn exponents(self) -> (f32, f32) {
         match self {
@@ -62,20 +29,6 @@ impl LeafShape {
             Self::Needle | Self::NeedlePair | Self::NeedleRosette => (0.18, 0.3),
         }
     }
-}
-
-/// Margins of leaves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect, Serialize, Deserialize)]
-pub enum LeafMargin {
-    /// Smooth.
-    #[default]
-    Entire,
-    /// In low waves: a beech's.
-    Wavy,
-    /// With teeth that point forward.
-    Serrate,
-    /// With teeth upon teeth: a birch's or a hazel's.
-    DoublySerrate,
 }
 
 impl LeafMargin {

@@ -1,12 +1,12 @@
 //! Where the leaves of a spray sit: a main shoot, side shoots left and right by turns, leaves along them.
 //!
-//! Drawn in coordinates (along, across): along is 0 at the twig's root and 1 at its tip, across in the same unit, so
-//! that the picture is the region `|across| <= min(along, 1 - along)`.
+//! Coordinates are (along, across): along is 0 at the twig's root and 1 at its tip, across in the same unit, so
+//! that the texture holds the region `|across| <= min(along, 1 - along)`.
 
 use bevy::math::Vec2;
 use rand::{RngExt, rngs::Xoshiro256PlusPlus};
 
-use super::{Leaf, LeafArrangement, outline::LeafShape};
+use super::settings::{Leaf, LeafArrangement, LeafShape};
 
 /// A stretch of twig.
 pub(super) struct Shoot {
@@ -15,13 +15,13 @@ pub(super) struct Shoot {
     pub radius: f32,
 }
 
-/// A leaf on the drawing.
+/// A leaf of a spray.
 pub(super) struct PlacedLeaf {
     pub root: Vec2,
     pub direction: Vec2,
     pub length: f32,
-    /// How much of its width and of its length is seen, 0.3 to 1.
-    pub seen: Vec2,
+    /// What is left of its length and width in projection from above, 0.3 to 1.
+    pub projected: Vec2,
     /// Sideways bend of the midrib, in blade lengths.
     pub bend: f32,
     /// 0 lowest to 1 topmost.
@@ -30,7 +30,7 @@ pub(super) struct PlacedLeaf {
     pub youth: f32,
     /// Random tone, 0 to 1.
     pub tone: f32,
-    /// Whether its underside is seen.
+    /// Whether its underside is up.
     pub turned: bool,
 }
 
@@ -79,7 +79,7 @@ pub(super) fn inside(point: Vec2) -> bool {
 
 impl Shoot {
     /// Leaves along the shoot and at its tip.
-    pub(super) fn leaf_out(&self, leaf: &Leaf, out: &mut Vec<PlacedLeaf>, random: &mut Xoshiro256PlusPlus) {
+    pub(super) fn place_leaves(&self, leaf: &Leaf, out: &mut Vec<PlacedLeaf>, random: &mut Xoshiro256PlusPlus) {
         let length = self.root.distance(self.tip);
         let step = leaf.spacing * leaf.length;
         let mut along = leaf.bare * length + 0.3 * step * random.random::<f32>();
@@ -146,7 +146,7 @@ impl Shoot {
         }
     }
 
-    /// One leaf at an angle to the shoot, unless it would leave the picture.
+    /// One leaf at an angle to the shoot, unless it would leave the texture.
     fn grow(
         &self,
         leaf: &Leaf,
@@ -167,7 +167,7 @@ impl Shoot {
             root,
             direction,
             length,
-            seen: Vec2::new((0.9 * dip).cos(), (1.15 * turn).cos()),
+            projected: Vec2::new((0.9 * dip).cos(), (1.15 * turn).cos()),
             bend: 0.35 * leaf.curl * random.random_range(-1.0..1.0),
             level: random.random(),
             youth: youth * youth,
@@ -184,16 +184,16 @@ impl PlacedLeaf {
     /// Points that enclose the blade well enough.
     fn corners(&self, width: f32) -> [Vec2; 7] {
         let at = |x: f32, y: f32| {
-            let bent = y * width * self.seen.y + self.bend * x * x;
-            self.root + (self.direction * (x * self.seen.x) + self.direction.perp() * bent) * self.length
+            let bent = y * width * self.projected.y + self.bend * x * x;
+            self.root + (self.direction * (x * self.projected.x) + self.direction.perp() * bent) * self.length
         };
         [at(1.0, 0.0), at(0.3, 0.5), at(0.3, -0.5), at(0.6, 0.5), at(0.6, -0.5), at(0.85, 0.3), at(0.85, -0.3)]
     }
 
-    /// A point of the drawing in the blade's own frame.
+    /// A point of the spray in the blade's own frame.
     pub(super) fn local(&self, point: Vec2) -> Vec2 {
         let from = (point - self.root) / self.length;
-        let x = from.dot(self.direction) / self.seen.x;
-        Vec2::new(x, (from.dot(self.direction.perp()) - self.bend * x * x.abs()) / self.seen.y)
+        let x = from.dot(self.direction) / self.projected.x;
+        Vec2::new(x, (from.dot(self.direction.perp()) - self.bend * x * x.abs()) / self.projected.y)
     }
 }

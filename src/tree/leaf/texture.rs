@@ -1,20 +1,20 @@
-//! The picture of one spray: a twig with its leaves, cut out by its alpha, and how its surface lies.
+//! The textures of one spray, a twig with its leaves: colour with an alpha mask, and normals.
 //!
 //! The twig runs along the diagonal of the square from its lower left to its upper right corner, as the cards of
-//! [`leaf_mesh`](crate::tree::leaf_mesh) want it. Leaves are painted from the lowest to the topmost; each is covered by
-//! its signed distance to the margin, in texels, and throws a soft shade on what lies below it.
+//! `leaf_mesh.rs` expect it. Leaves are drawn from the lowest to the topmost. Coverage comes from
+//! the signed distance to the margin, in texels. Each leaf shades what lies below it.
 
 use bevy::math::Vec2;
 use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
 
 use super::{
-    Leaf,
     blade::{Blade, Place},
+    settings::Leaf,
     spray::{PlacedLeaf, Shoot, shoots},
 };
 use crate::{
     texture::{
-        Canvas, TextureData,
+        LinearImage, TextureData,
         fourier::{Combination, FourierTexture, FourierWaves},
         linear, mix,
     },
@@ -33,37 +33,37 @@ pub struct LeafTextures {
 
 /// Side of the texture, texels.
 const SIZE: usize = 512;
-/// Texels in a unit of length on the drawing: the twig runs along the diagonal.
+/// Texels in a unit of length: the twig runs along the diagonal.
 const TEXELS: f32 = SIZE as f32 * std::f32::consts::SQRT_2;
 /// Brightness of the lowest leaves of a spray against the topmost.
 const LOWEST_SHADE: f32 = 0.55;
-/// Darkness of the shade that a leaf throws, and how far it falls in the units of the drawing.
+/// Darkness of the shade of a leaf, and how far it reaches beyond the leaf, in lengths of the spray.
 const SHADE: f32 = 0.38;
 const SHADE_REACH: f32 = 0.012;
 
-/// Paints a spray.
+/// Renders the textures of a spray.
 #[must_use]
 pub fn leaf_textures(foliage: &Foliage, seed: u64) -> LeafTextures {
     let leaf = &foliage.leaf;
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let shoots = shoots(leaf, &mut random);
     let mut leaves = Vec::new();
-    shoots.iter().for_each(|shoot| shoot.leaf_out(leaf, &mut leaves, &mut random));
-    // Painter's order: sprays are seen from above, where the lighter leaves are.
+    shoots.iter().for_each(|shoot| shoot.place_leaves(leaf, &mut leaves, &mut random));
+    // The topmost leaves come last: sprays are seen from above, where the lighter leaves are.
     leaves.sort_by(|a, b| a.level.total_cmp(&b.level));
 
     let blade = Blade::new(leaf);
-    let mut painter = Painter::new(leaf);
-    // Some leaves hang below the twigs.
+    let mut canvas = SprayCanvas::new(leaf);
+    // A quarter of the leaves is below the twigs.
     let below = leaves.len() / 4;
-    leaves[..below].iter().for_each(|leaf| painter.leaf(&blade, leaf));
-    shoots.iter().for_each(|shoot| painter.twig(shoot));
-    leaves[below..].iter().for_each(|leaf| painter.leaf(&blade, leaf));
-    LeafTextures { base_colour: painter.colours.into_mask_texture(), normal: painter.normals.into_normal_texture() }
+    leaves[..below].iter().for_each(|leaf| canvas.leaf(&blade, leaf));
+    shoots.iter().for_each(|shoot| canvas.twig(shoot));
+    leaves[below..].iter().for_each(|leaf| canvas.leaf(&blade, leaf));
+    LeafTextures { base_colour: canvas.colours.into_mask_texture(), normal: canvas.normals.into_normal_texture() }
 }
 
-/// What is laid on a texel: how much of it is covered, colour, normal and translucency; or shade, where nothing is.
-struct Paint {
+/// What is blended over a texel: coverage, colour, normal and translucency; or shade, where nothing covers it.
+struct Fragment {
     coverage: f32,
     shade: f32,
     colour: [f32; 3],
@@ -81,27 +81,27 @@ fn waves(leaf: &Leaf) -> Option<FourierWaves> {
     (leaf.mottle > 0.0).then(|| texture.waves().ok()).flatten()
 }
 
-struct Painter {
+struct SprayCanvas {
     /// How far the Fourier texture darkens and lightens leaves; no waves where it does not.
     mottle: f32,
     waves: Option<FourierWaves>,
-    colours: Canvas,
-    normals: Canvas,
+    colours: LinearImage,
+    normals: LinearImage,
     colour: [f32; 3],
     young: [f32; 3],
     back: [f32; 3],
     bark: [f32; 3],
 }
 
-impl Painter {
+impl SprayCanvas {
     fn new(leaf: &Leaf) -> Self {
         let colour = linear(leaf.colour);
         let ground = mix(colour, [0.0; 3], 0.3);
         Self {
             mottle: leaf.mottle,
             waves: waves(leaf),
-            colours: Canvas::filled(SIZE, [ground[0], ground[1], ground[2], 0.0]),
-            normals: Canvas::filled(SIZE, [0.0, 0.0, 1.0, 1.0]),
+            colours: LinearImage::filled(SIZE, [ground[0], ground[1], ground[2], 0.0]),
+            normals: LinearImage::filled(SIZE, [0.0, 0.0, 1.0, 1.0]),
             colour,
             young: linear(leaf.young_colour),
             back: linear(leaf.back_colour),
@@ -113,7 +113,7 @@ impl Painter {
         let axis = shoot.tip - shoot.root;
         let (radius, bark) = (shoot.radius, self.bark);
         let direction = axis.normalize_or(Vec2::X);
-        self.stamp(shoot.root + 0.5 * axis, 0.5 * axis.length() + 2.0 * radius, |point| {
+        self.draw(shoot.root + 0.5 * axis, 0.5 * axis.length() + 2.0 * radius, |point| {
             let share = ((point - shoot.root).dot(axis) / axis.length_squared().max(1e-9)).clamp(0.0, 1.0);
             let tapered = radius * (1.0 - 0.5 * share);
             let side = (point - shoot.root - axis * share).dot(direction.perp()) / tapered;
@@ -121,7 +121,7 @@ impl Painter {
             let coverage = (0.5 + (tapered - off) * TEXELS).clamp(0.0, 1.0);
             let lit = 1.1 - 0.5 * side.clamp(-1.0, 1.0).powi(2);
             let normal = normal(direction.perp() * side.clamp(-0.9, 0.9), 0.0);
-            Some(Paint { coverage, shade: 0.0, colour: bark.map(|channel| channel * lit), normal })
+            Some(Fragment { coverage, shade: 0.0, colour: bark.map(|channel| channel * lit), normal })
         });
     }
 
@@ -130,12 +130,12 @@ impl Painter {
         let grown = mix(self.colour, self.young, (0.75 * leaf.youth + 0.35 * leaf.tone).min(1.0));
         let base = if leaf.turned { mix(grown, self.back, 0.85) } else { grown };
         let tone = level * (0.85 + 0.3 * leaf.tone);
-        let texels = leaf.length * leaf.seen.min_element() * TEXELS;
+        let texels = leaf.length * leaf.projected.min_element() * TEXELS;
         let middle = leaf.root + leaf.direction * (0.5 * leaf.length);
         let (mottle, waves) = (self.mottle, self.waves.clone());
         let mottling = |point: Vec2| waves.as_ref().map_or(1.0, |waves| 1.0 + mottle * (waves.at(point) - 0.5));
         // Bent leaves reach a little further.
-        self.stamp(middle, (blade.reach() + leaf.bend.abs()) * leaf.length, |point| {
+        self.draw(middle, (blade.reach() + leaf.bend.abs()) * leaf.length, |point| {
             let place = blade.at(leaf.local(point))?;
             let coverage = (0.5 + place.inside * texels).clamp(0.0, 1.0);
             let near = 1.0 + place.inside * leaf.length / SHADE_REACH;
@@ -146,7 +146,7 @@ impl Painter {
             let side = if leaf.turned { -1.0 } else { 1.0 };
             let tone = tone * mottling(point);
             let slope = leaf.direction * place.slope.x + leaf.direction.perp() * place.slope.y;
-            Some(Paint {
+            Some(Fragment {
                 coverage,
                 shade,
                 colour: colour(base, tone, leaf, &place),
@@ -155,8 +155,8 @@ impl Painter {
         });
     }
 
-    /// Lays on what `paint` answers within `radius` of `centre`.
-    fn stamp(&mut self, centre: Vec2, radius: f32, paint: impl Fn(Vec2) -> Option<Paint>) {
+    /// Blends the fragments of a shape that lies within `radius` of `centre`.
+    fn draw(&mut self, centre: Vec2, radius: f32, shape: impl Fn(Vec2) -> Option<Fragment>) {
         let size = SIZE as f32;
         // (along, across) to the unit square: x = along + across, y = 1 - along + across.
         let middle = Vec2::new(centre.x + centre.y, 1.0 - centre.x + centre.y) * size;
@@ -167,28 +167,28 @@ impl Painter {
             for x in low.x..high.x {
                 let (u, v) = ((x as f32 + 0.5) / size, (y as f32 + 0.5) / size);
                 let point = Vec2::new(0.5 * (u + 1.0 - v), 0.5 * (u + v - 1.0));
-                if let Some(paint) = paint(point) {
-                    self.lay(y as usize * SIZE + x as usize, &paint);
+                if let Some(fragment) = shape(point) {
+                    self.blend(y as usize * SIZE + x as usize, &fragment);
                 }
             }
         }
     }
 
     /// One texel: what is there is shaded, then covered (Porter & Duff 1984, "over").
-    fn lay(&mut self, index: usize, paint: &Paint) {
+    fn blend(&mut self, index: usize, fragment: &Fragment) {
         let below = &mut self.colours.texels[index];
-        let kept = below[3] * (1.0 - paint.coverage);
-        let alpha = kept + paint.coverage;
+        let kept = below[3] * (1.0 - fragment.coverage);
+        let alpha = kept + fragment.coverage;
         if alpha > 0.0 {
-            for (channel, &laid) in below[..3].iter_mut().zip(&paint.colour) {
-                let shaded = *channel * (1.0 - paint.shade);
-                *channel = (kept * shaded + paint.coverage * laid) / alpha;
+            for (channel, &over) in below[..3].iter_mut().zip(&fragment.colour) {
+                let shaded = *channel * (1.0 - fragment.shade);
+                *channel = (kept * shaded + fragment.coverage * over) / alpha;
             }
             below[3] = alpha;
         }
         let normal = &mut self.normals.texels[index];
-        for (channel, &laid) in normal.iter_mut().zip(&paint.normal) {
-            *channel += (laid - *channel) * paint.coverage;
+        for (channel, &over) in normal.iter_mut().zip(&fragment.normal) {
+            *channel += (over - *channel) * fragment.coverage;
         }
     }
 }

@@ -4,8 +4,8 @@
 use bevy::math::Vec2;
 
 use super::{
-    Leaf,
-    outline::{LeafShape, PALMATE_CENTRE, PALMATE_LOBES},
+    outline::{PALMATE_CENTRE, PALMATE_LOBES},
+    settings::{Leaf, LeafShape},
 };
 
 /// A straight piece of vein.

@@ -1,5 +1,4 @@
-use super::*;
-use crate::wind::FieldResolution;
+use super::{super::settings::FieldResolution, *};
 use approx::assert_relative_eq;
 use bevy::tasks::TaskPoolBuilder;
 
@@ -9,7 +8,7 @@ fn small_settings() -> FieldSettings {
 }
 
 fn profile(settings: &FieldSettings) -> LogProfile {
-    LogProfile::from_reference(settings.mean_speed_m_s, settings.roughness_length_m, settings.displacement_height_m)
+    LogProfile::from_reference(settings.speed, settings.roughness_m, settings.displacement_m)
 }
 
 fn realise(settings: &FieldSettings) -> Turbulence {
@@ -41,7 +40,7 @@ fn the_same_seed_gives_the_same_bits_on_any_number_of_threads() {
 }
 
 #[test]
-fn the_transform_to_time_is_the_real_part_of_the_sum_of_waves() {
+fn transform_to_time_is_the_real_part_of_the_sum_of_waves() {
     let grid = Grid { time_samples: 16, columns: 3, levels: 2, frequency_step_hz: 1.0 };
     let amplitudes: Vec<Complex<f32>> = (0..grid.bins() * grid.plane())
         .map(|index| Complex::from_polar(1.0 + index as f32 % 5.0, index as f32))
@@ -107,7 +106,7 @@ fn each_frequency_has_its_power_and_its_coherence() {
 }
 
 #[test]
-fn the_two_bands_hold_the_resolved_and_the_whole_variance() {
+fn bands_have_the_resolved_or_the_whole_variance() {
     let spectrum = small_settings();
     let whole = FieldSettings { band: TurbulenceBand::TrueVariance, ..small_settings() };
     let friction = f64::from(profile(&spectrum).friction_velocity_m_s);

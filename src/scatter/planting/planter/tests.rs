@@ -1,9 +1,13 @@
 use super::*;
 use crate::scatter::{
-    counts::{CountModel, Frequencies, goodness_of_fit},
+    counts::{dispersion::goodness_of_fit, frequencies::Frequencies, law::CountModel},
     ground::LevelGround,
-    plan::{Area, GroundLimits, KeepOut, Shape, Stock},
-    quadrat::QuadratGrid,
+    plan::{
+        forest::Area,
+        shape::Shape,
+        stock::{GroundLimits, Stock},
+    },
+    quadrat::grid::QuadratGrid,
 };
 use proptest::prelude::*;
 use std::collections::BTreeSet;
@@ -47,7 +51,7 @@ fn shipped() -> ForestPlan {
 }
 
 #[test]
-fn the_cells_do_not_change_what_stands_where() {
+fn plants_do_not_depend_on_the_size_of_cells() {
     let forest = |cell_m| {
         let planted = whole(&Planter::new(&ForestPlan { cell_m, ..shipped() }).unwrap(), &LevelGround(500.0));
         assert_eq!(fingerprints(&planted).len(), planted.len(), "no plant is in two cells");
@@ -60,7 +64,7 @@ fn the_cells_do_not_change_what_stands_where() {
 }
 
 #[test]
-fn a_cell_is_the_same_whatever_was_planted_before() {
+fn a_cell_does_not_depend_on_cells_planted_before() {
     let planter = Planter::new(&shipped()).unwrap();
     let (mut first, mut again) = (Vec::new(), Vec::new());
     planter.plant(IVec2::new(1, -2), &LevelGround(0.0), &mut first);
@@ -74,7 +78,7 @@ fn a_cell_is_the_same_whatever_was_planted_before() {
 }
 
 #[test]
-fn no_two_stems_are_nearer_than_the_least_distance_across_cells_and_areas() {
+fn least_distance_holds_across_cells_and_areas() {
     let dense = |least_distance_m, species: &str| Area {
         shape: square(90.0),
         density_per_ha: 600.0,
@@ -95,7 +99,7 @@ fn no_two_stems_are_nearer_than_the_least_distance_across_cells_and_areas() {
             nearest = nearest.min(distance / least);
         }
     }
-    assert!(nearest < 1.05, "the limit is felt: {nearest}");
+    assert!(nearest < 1.05, "no pair is near the limit: {nearest}");
     // The trees lose none to the shrubs.
     let alone = self::planter(vec![dense(2.4, "tree")], vec![]);
     let trees = |planted: &[Planted]| planted.iter().filter(|plant| plant.species == 0).count();
@@ -104,7 +108,7 @@ fn no_two_stems_are_nearer_than_the_least_distance_across_cells_and_areas() {
 
 /// Counted on the quadrats of the area itself, the plants follow the area's law, and their number its density.
 #[test]
-fn the_pattern_is_the_laws_and_the_density_as_asked() {
+fn pattern_follows_its_law_and_density() {
     for pattern in [
         CountModel::Poisson,
         CountModel::Binomial { n: 6 },
@@ -135,7 +139,7 @@ fn the_pattern_is_the_laws_and_the_density_as_asked() {
 
 /// The least distance of the default area takes its stems from the borders of the quadrats only.
 #[test]
-fn the_default_least_distance_costs_few_stems() {
+fn least_distance_costs_the_documented_share_of_stems() {
     let area = |least_distance_m| Area { shape: square(800.0), least_distance_m, ..Default::default() };
     let count = |area| whole(&planter(vec![area], vec![]), &LevelGround(0.0)).len() as f64;
     let all = count(area(0.0));
@@ -147,7 +151,7 @@ fn the_default_least_distance_costs_few_stems() {
 }
 
 #[test]
-fn nothing_grows_where_the_ground_or_the_plan_forbids_it() {
+fn limits_of_ground_and_keep_out_shapes_hold() {
     /// Rises along x, with a hole.
     struct Slope;
     impl Ground for Slope {
@@ -186,7 +190,7 @@ fn nothing_grows_where_the_ground_or_the_plan_forbids_it() {
 }
 
 #[test]
-fn shares_hold_with_and_without_drifts_and_drifts_prevail() {
+fn shares_of_species_hold_with_and_without_drifts() {
     let area = |drift_m| Area {
         shape: square(1500.0),
         density_per_ha: 50.0,
@@ -215,7 +219,7 @@ fn shares_hold_with_and_without_drifts_and_drifts_prevail() {
 }
 
 #[test]
-fn an_empty_plan_plants_nothing_and_too_many_species_are_refused() {
+fn empty_plans_have_no_cells_and_too_many_species_are_refused() {
     assert_eq!(planter(vec![], vec![]).cells(), None);
     assert_eq!(planter(vec![Area { density_per_ha: 0.0, ..Default::default() }], vec![]).cells(), None);
     let areas = (0..10_u32)
@@ -228,7 +232,7 @@ fn an_empty_plan_plants_nothing_and_too_many_species_are_refused() {
     assert_eq!(error.to_string(), "`species.len()` is 257, but must be 1 to 256");
 }
 
-/// Numbers as they come from a slip of the keyboard, many of them sensible.
+/// Numbers, many of them sensible, some extreme.
 fn number() -> impl Strategy<Value = f32> {
     prop_oneof![
         6 => 0.0_f32..200.0,
@@ -265,7 +269,7 @@ fn shape() -> impl Strategy<Value = Shape> {
 proptest! {
     /// Whatever the plan, it is refused or planted, with finite plants within its bounds.
     #[test]
-    fn no_plan_panics_or_plants_what_is_no_number(
+    fn any_plan_is_refused_or_gives_finite_plants(
         shape in shape(), pattern in pattern(), numbers in prop::array::uniform8(number()),
         keep_out in prop::collection::vec([number(), number()], 0..5),
     ) {
@@ -275,7 +279,7 @@ proptest! {
         let area =
             Area { shape, density_per_ha, pattern, quadrat_m, least_distance_m, drift_m, ground, stock, ..Default::default() };
         let keep_out = vec![KeepOut::Path { points_m: keep_out, width_m }];
-        // Mostly valid but for what is tried.
+        // Valid but for the field under test.
         let tame = Area { quadrat_m: 0.0, least_distance_m: 0.0, drift_m: 0.0, stock: vec![Stock::default()], ..area.clone() };
         for (area, keep_out) in [(area, keep_out), (tame, vec![])] {
             let plan = ForestPlan { areas: vec![area], keep_out, ..Default::default() };

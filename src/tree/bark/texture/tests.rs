@@ -1,3 +1,5 @@
+//! The textures of barks, for every pattern.
+
 use super::*;
 use crate::tree::bark::BarkPattern;
 
@@ -35,7 +37,7 @@ fn bark_tiles_without_a_seam() {
 }
 
 #[test]
-fn bark_repeats_for_its_seed_only() {
+fn bark_is_determined_by_its_seed() {
     for pattern in PATTERNS {
         let bark = Bark { pattern, plates_around: 5, ..Bark::default() };
         assert_eq!(bark_textures(&bark, 1), bark_textures(&bark, 1));
@@ -62,7 +64,7 @@ fn furrows_are_darker_and_more_closed_than_plates() {
 }
 
 #[test]
-fn extreme_barks_are_painted_too() {
+fn extreme_barks_have_textures() {
     for pattern in PATTERNS {
         for plates in [1, 32] {
             let bark = Bark {

@@ -4,10 +4,10 @@ use bevy::reflect::Reflect;
 use rand::Rng;
 use serde::{Deserialize, Serialize};
 
-use super::{Growing, Lifetime, Plan, no_branch};
-use crate::tree::{
-    growth::{age::Stage, envelope::EnvelopeShape, grower::Wood, reeves::Trunk},
-    species::{SpeciesError, require},
+use super::plan::{self, Level, Lifetime, Plan, no_branch};
+use crate::{
+    setting::{SettingError, require},
+    tree::growth::{age::Stage, envelope::EnvelopeShape, grower::GrownBranches, trunk::Trunk},
 };
 
 /// Parameters of Zaharia's fir. That branches shorten towards the top, into a cone, comes from his `l_branch` itself.
@@ -80,9 +80,9 @@ impl Default for Fir {
 }
 
 impl Fir {
-    pub(in crate::tree::growth) fn validate(&self) -> Result<(), SpeciesError> {
+    pub(in crate::tree) fn validate(&self) -> Result<(), SettingError> {
         let ages_years = [self.min_age_years, self.max_age_years];
-        super::validate(&self.trunk, self.delta_m, self.shortest, ages_years, self.pipe_exponent)?;
+        plan::validate(&self.trunk, self.delta_m, self.shortest, ages_years, self.pipe_exponent)?;
         require("min_floors", self.min_floors, 0.0..=80.0)?;
         require("max_floors", self.max_floors, self.min_floors..=80.0)?;
         require("branching_factor", self.branching_factor as f32, 1.0..=12.0)?;
@@ -96,11 +96,11 @@ impl Fir {
         require("sag", self.sag, -0.3..=0.3)
     }
 
-    pub(in crate::tree::growth) fn grow(&self, stage: &Stage, random: &mut impl Rng) -> Wood {
+    pub(in crate::tree) fn grow(&self, stage: &Stage, random: &mut impl Rng) -> GrownBranches {
         let lifetime = Lifetime::at(stage.years, self.min_age_years, self.max_age_years);
         // A fir keeps its slender crown while it grows: the age in `l_branch` would make an old one as wide as high.
         let keeps = 1.0 - lifetime.over_max;
-        let floors = Growing {
+        let floors = Level {
             adjust_branch: self.adjust_branch[0] + keeps,
             nodes: no_branch(self.min_floors, self.max_floors, lifetime.share),
             per_node: self.branching_factor,
@@ -113,7 +113,7 @@ impl Fir {
             sag: self.sag,
             crook_deg: 8.0,
         };
-        let sides = Growing {
+        let sides = Level {
             adjust_branch: self.adjust_branch[1] + keeps,
             nodes: no_branch(0.0, self.side_pairs, lifetime.share),
             per_node: 2,
@@ -141,13 +141,13 @@ mod tests {
 
     use super::*;
 
-    fn grown(age_years: f32) -> Wood {
+    fn grown(age_years: f32) -> GrownBranches {
         Fir::default().grow(&Stage::mature(age_years), &mut Xoshiro256PlusPlus::seed_from_u64(4))
     }
 
     /// The branches of a floor hold on at one height, all around the trunk.
     #[test]
-    fn branches_stand_in_floors() {
+    fn branches_grow_in_floors() {
         let wood = grown(120.0);
         let floors: Vec<f32> = wood.beams.iter().filter(|beam| beam.order == 1).map(|beam| beam.base.y).collect();
         let mut heights = floors.clone();

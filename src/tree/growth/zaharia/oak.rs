@@ -4,15 +4,12 @@ use bevy::reflect::Reflect;
 use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
 use serde::{Deserialize, Serialize};
 
-use super::{Growing, Lifetime, Plan, no_branch};
-use crate::tree::{
-    growth::{
-        age::Stage,
-        envelope::EnvelopeShape,
-        grower::Wood,
-        reeves::{ORDERS_LIMIT, Trunk},
+use super::plan::{self, Level, Lifetime, Plan, no_branch};
+use crate::{
+    setting::{SettingError, require},
+    tree::growth::{
+        age::Stage, envelope::EnvelopeShape, grower::GrownBranches, reeves_blau::ORDERS_LIMIT, trunk::Trunk,
     },
-    species::{SpeciesError, require},
 };
 
 /// Parameters of Zaharia's oak, in his words where he has any.
@@ -94,13 +91,13 @@ impl Default for Oak {
 }
 
 impl Oak {
-    pub(in crate::tree::growth) fn validate(&self) -> Result<(), SpeciesError> {
+    pub(in crate::tree) fn validate(&self) -> Result<(), SettingError> {
         let ages_years = [self.min_age_years, self.max_age_years];
-        super::validate(&self.trunk, self.delta_m, self.shortest, ages_years, self.pipe_exponent)?;
+        plan::validate(&self.trunk, self.delta_m, self.shortest, ages_years, self.pipe_exponent)?;
         require("min_branch", self.min_branch, 0.0..=40.0)?;
         require("max_branch", self.max_branch, self.min_branch..=40.0)?;
         if self.adjust_branch.len() > ORDERS_LIMIT {
-            return Err(SpeciesError::out_of_range("adjust_branch", self.adjust_branch.len(), "at most 5 levels"));
+            return Err(SettingError::new("adjust_branch", self.adjust_branch.len(), "at most 5 levels"));
         }
         for (level, &adjust) in self.adjust_branch.iter().enumerate() {
             require(&format!("adjust_branch[{level}]"), adjust, -1.0..=2.0)?;
@@ -114,9 +111,9 @@ impl Oak {
         require("most_leaves", self.most_leaves as f32, 0.0..=100.0)
     }
 
-    pub(in crate::tree::growth) fn grow(&self, stage: &Stage, random: &mut impl Rng) -> Wood {
+    pub(in crate::tree) fn grow(&self, stage: &Stage, random: &mut impl Rng) -> GrownBranches {
         let lifetime = Lifetime::at(stage.years, self.min_age_years, self.max_age_years);
-        let level = |&adjust_branch: &f32| Growing {
+        let level = |&adjust_branch: &f32| Level {
             adjust_branch,
             nodes: no_branch(self.min_branch, self.max_branch, lifetime.share),
             per_node: 1,
@@ -205,7 +202,7 @@ mod tests {
     fn no_setting_grows_beyond_the_limit() {
         let oak = Oak { min_branch: 40.0, max_branch: 40.0, adjust_branch: vec![1.0; 5], ..Oak::default() };
         oak.validate().unwrap();
-        assert!(oak.counts(200.0, 1).branches <= super::super::super::grower::BEAMS_LIMIT);
+        assert!(oak.counts(200.0, 1).branches <= crate::tree::growth::grower::BEAMS_LIMIT);
     }
 
     #[test]

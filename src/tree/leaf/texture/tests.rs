@@ -1,3 +1,5 @@
+//! The textures of sprays, for every shape of leaf.
+
 use super::*;
 use crate::{
     texture::MASK_CUT_OFF,
@@ -49,7 +51,7 @@ fn foliage(shape: LeafShape) -> Foliage {
 }
 
 #[test]
-fn distance_does_not_thin_the_leaves() {
+fn mips_keep_the_coverage_of_leaves() {
     for shape in SHAPES {
         let texture = leaf_textures(&foliage(shape), 4).base_colour;
         let full = drawn_share(&texture.mips[0]);
@@ -73,7 +75,7 @@ fn no_leaf_is_cut_by_the_square_except_the_twig_at_its_root() {
 }
 
 #[test]
-fn a_spray_repeats_for_its_seed_only() {
+fn a_spray_is_determined_by_its_seed() {
     let foliage = foliage(LeafShape::Ovate);
     assert_eq!(leaf_textures(&foliage, 1), leaf_textures(&foliage, 1));
     assert_ne!(leaf_textures(&foliage, 1), leaf_textures(&foliage, 2));
@@ -109,7 +111,7 @@ fn margins_are_closed_and_as_wide_as_the_leaf_is_stated_to_be() {
 }
 
 #[test]
-fn the_distance_to_a_square_is_known() {
+fn the_distance_to_a_square_is_exact() {
     let square = [Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0), Vec2::new(1.0, 1.0), Vec2::new(-1.0, 1.0)];
     for (point, expected) in
         [(Vec2::ZERO, 1.0), (Vec2::new(0.75, 0.2), 0.25), (Vec2::new(2.0, 0.0), -1.0), (Vec2::new(4.0, 5.0), -5.0)]
@@ -119,7 +121,7 @@ fn the_distance_to_a_square_is_known() {
 }
 
 #[test]
-fn extreme_leaves_are_painted_too() {
+fn extreme_leaves_have_textures() {
     for (length, shoots, spacing, width, stalk) in [(0.6, 0, 2.0, 1.2, 1.0), (0.01, 40, 0.3, 0.02, 0.0)] {
         for shape in [LeafShape::Lobed, LeafShape::Palmate, LeafShape::NeedleRosette] {
             let leaf =

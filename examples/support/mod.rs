@@ -1,0 +1,15 @@
+//! What the examples share: options, start-up, the window, pictures instead of a window, ground and sky.
+
+// Each example uses a part of it.
+#![allow(dead_code)]
+
+pub mod arguments;
+pub mod capture;
+pub mod daylight;
+pub mod landscape;
+pub mod options;
+pub mod pictures;
+pub mod scene;
+pub mod sky;
+pub mod start;
+pub mod window;

@@ -1,0 +1,54 @@
+//! A scene: what an example says about itself to get a window and pictures.
+
+use super::{options::SceneOptions, pictures, start, window};
+use bevy::prelude::*;
+use bevy_windwood::prelude::*;
+use std::process::ExitCode;
+
+/// A scene to fly through in a window, or to render to pictures.
+pub trait Scene: Resource + Sized {
+    /// Title of the window.
+    const TITLE: &'static str;
+    /// Speed of the camera in the window, m/s: usual, and while Shift is held.
+    const SPEEDS_M_S: [f32; 2];
+
+    fn options(&self) -> &SceneOptions;
+
+    /// The wind, except for what the options say of it.
+    fn wind(&self) -> Wind;
+
+    /// What pictures are called, without number and extension.
+    fn picture_name(&self) -> &'static str;
+
+    fn camera_transform(&self) -> Transform;
+
+    /// Components of every camera besides projection and target: fog, exposure.
+    fn camera_effects() -> impl Bundle;
+
+    /// Adds the system that spawns everything but the camera.
+    fn plugin(app: &mut App);
+
+    /// Adds the text and the keys of the window.
+    fn window_plugin(app: &mut App);
+
+    /// Whether all that has to be drawn has been spawned.
+    ///
+    /// # Errors
+    /// If it never will be.
+    fn is_spawned(&self, world: &mut World) -> Result<bool, String>;
+}
+
+/// Runs a scene.
+pub fn run<S: Scene>(scene: S) -> ExitCode {
+    let SceneOptions { wind, year, image, .. } = scene.options().clone();
+    let mut app = start::app(S::TITLE, &image);
+    app.insert_resource(Wind { speed: wind.wind, seed: wind.seed, ..scene.wind() })
+        .insert_resource(Season { year })
+        .insert_resource(scene)
+        .add_plugins(S::plugin);
+    if image.headless {
+        return start::exit_code(pictures::render::<S>(&mut app));
+    }
+    app.add_plugins((window::plugin::<S>, S::window_plugin)).run();
+    ExitCode::SUCCESS
+}

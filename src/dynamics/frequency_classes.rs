@@ -1,0 +1,91 @@
+//! Natural frequencies, rounded to a few classes, so that one table of responses serves all beams.
+
+use bevy::reflect::Reflect;
+use serde::{Deserialize, Serialize};
+
+/// Natural frequencies in steps of equal ratio, rounded to the nearest.
+///
+/// Class `i` has the frequency `lowest_hz * ratio^i`; the last of the `count` classes stands for all higher frequencies
+/// and is quasi-static.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect, Serialize, Deserialize)]
+pub struct FrequencyClasses {
+    /// Frequency of class 0, in Hz. Slower beams count as of this class.
+    pub lowest_hz: f32,
+    /// Ratio of neighbouring classes, above 1. 1.22 keeps the rounding within 10%, less than the natural spread of
+    /// wood's stiffness.
+    pub ratio: f32,
+    /// Number of classes, the quasi-static one included. At least 1.
+    pub count: usize,
+}
+
+impl Default for FrequencyClasses {
+    /// 0.05 Hz (a great tree) to 4 Hz, the most that samples of 1/16 s can show, in steps of +-10%, and the
+    /// quasi-static class.
+    fn default() -> Self {
+        Self { lowest_hz: 0.05, ratio: 1.22, count: 23 }
+    }
+}
+
+impl FrequencyClasses {
+    /// Index of the last class, the quasi-static one.
+    pub fn quasi_static(&self) -> usize {
+        self.count.max(1) - 1
+    }
+
+    /// Place of a natural frequency on the scale of classes, not rounded. A frequency that is not a positive number
+    /// counts as quasi-static.
+    pub fn coordinate(&self, frequency_hz: f32) -> f32 {
+        let coordinate = (frequency_hz / self.lowest_hz).ln() / self.ratio.ln();
+        if coordinate.is_finite() { coordinate } else { self.quasi_static() as f32 }
+    }
+
+    /// What an instance's scale adds to its beams' coordinates: a tree `scale` times as large sways as many times more
+    /// slowly. A scale that is not a positive number adds nothing.
+    pub(crate) fn shift(&self, scale: f32) -> f32 {
+        let shift = -scale.ln() / self.ratio.ln();
+        if shift.is_finite() { shift } else { 0.0 }
+    }
+
+    /// The class nearest to a coordinate. NaN counts as quasi-static.
+    pub fn nearest(&self, coordinate: f32) -> usize {
+        let last = self.quasi_static();
+        if coordinate < last as f32 { ((coordinate + 0.5).max(0.0) as usize).min(last) } else { last }
+    }
+
+    /// Natural frequency of a class in Hz; infinite for the quasi-static one.
+    pub fn frequency_hz(&self, class: usize) -> f32 {
+        if class < self.quasi_static() { self.lowest_hz * self.ratio.powi(class as i32) } else { f32::INFINITY }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn classes_are_of_equal_ratio() {
+        let classes = FrequencyClasses::default();
+        for class in 0..classes.quasi_static() {
+            assert_eq!(classes.nearest(classes.coordinate(classes.frequency_hz(class))), class);
+        }
+        let rounded = |frequency_hz: f32| classes.frequency_hz(classes.nearest(classes.coordinate(frequency_hz)));
+        // Half a step is 1.22^(1/2) = 1.105.
+        for frequency_hz in [0.06, 0.1, 0.77, 3.0] {
+            assert!((rounded(frequency_hz) / frequency_hz).ln().abs() < 0.1);
+        }
+        assert_eq!(rounded(5.9), f32::INFINITY);
+        assert_eq!(classes.nearest(classes.coordinate(1e-3)), 0);
+        assert!((classes.coordinate(1.0) + classes.shift(2.0) - classes.coordinate(0.5)).abs() < 1e-4);
+    }
+
+    #[test]
+    fn any_number_has_a_class() {
+        let classes = FrequencyClasses::default();
+        for frequency_hz in [f32::NAN, 0.0, -1.0, f32::INFINITY] {
+            assert_eq!(classes.nearest(classes.coordinate(frequency_hz)), 22);
+        }
+        assert_eq!(classes.nearest(f32::NAN), 22);
+        assert_eq!(classes.shift(0.0), 0.0);
+        assert_eq!(FrequencyClasses { count: 0, ..classes }.nearest(3.0), 0);
+    }
+}

@@ -1,0 +1,88 @@
+//! Begins forests from their plans, and removes what belongs to them.
+
+use super::{
+    cells::{ForestCells, SharedGround},
+    components::{Forest, ForestCell, ForestGround, ForestSettings},
+    cover::StandingGround,
+};
+use crate::{
+    scatter::{ForestPlan, LevelGround, Planter},
+    terrain::{Terrain, TerrainSettings},
+};
+use bevy::prelude::*;
+use std::sync::Arc;
+
+/// Begins anew with forests that are new, whose plan has been loaded or changed, or whose ground is another.
+pub(super) fn begin_forests(
+    mut commands: Commands,
+    plans: Res<Assets<ForestPlan>>,
+    assets: Res<AssetServer>,
+    mut events: MessageReader<AssetEvent<ForestPlan>>,
+    mut forests: Query<(Entity, Ref<Forest>, Ref<ForestSettings>, Option<Ref<ForestGround>>, Option<&mut ForestCells>)>,
+    terrains: Query<(Ref<Terrain>, Ref<TerrainSettings>)>,
+) {
+    let changed: Vec<AssetId<ForestPlan>> = events
+        .read()
+        .filter_map(|event| match event {
+            AssetEvent::Added { id } | AssetEvent::Modified { id } => Some(*id),
+            _ => None,
+        })
+        .collect();
+    let terrain = terrains.iter().next();
+    // Stems stand on the drawn ground, whose cells the settings give.
+    let other_terrain =
+        terrain.as_ref().is_some_and(|(terrain, settings)| terrain.is_changed() || settings.is_changed());
+    for (entity, forest, wanted, own_ground, before) in &mut forests {
+        let other_ground = own_ground.as_ref().map_or(other_terrain, Ref::is_changed);
+        let due = forest.is_changed() || wanted.is_changed() || other_ground || changed.contains(&forest.plan.id());
+        let Some(plan) = plans.get(&forest.plan).filter(|_| due) else { continue };
+        let planter = match Planter::new(plan) {
+            Ok(planter) => planter,
+            Err(error) => {
+                warn!("forest: {error}; the last good one stays");
+                continue;
+            }
+        };
+        let settings = match wanted.validate() {
+            Ok(()) => ForestSettings::clone(&wanted),
+            Err(error) => {
+                let last = before.as_ref().map_or_else(ForestSettings::default, |before| before.settings().clone());
+                warn!("forest settings: {error}; {last:?} are used");
+                last
+            }
+        };
+        let ground: SharedGround = match (own_ground, &terrain) {
+            (Some(own), _) => own.0.clone(),
+            (None, Some((terrain, settings))) => {
+                Arc::new(StandingGround::new(terrain.ground.clone(), settings.finest_cell_m))
+            }
+            (None, None) => Arc::new(LevelGround::default()),
+        };
+        let path = |name: &String| assets.load(format!("{}/{name}.species.ron", settings.species_folder));
+        let species = planter.species().iter().map(path).collect();
+        let generation = before.as_ref().map_or(0, |before| before.generation() + 1);
+        match ForestCells::new(planter, ground, species, settings, generation) {
+            Ok(mut cells) => {
+                let of_no_use = before.map(|mut before| cells.take_over(&mut before));
+                of_no_use.into_iter().flatten().for_each(|cell| commands.entity(cell).despawn());
+                commands.entity(entity).insert(cells);
+            }
+            Err(error) => warn!("forest: {error}; the last good one stays"),
+        }
+    }
+}
+
+/// Removes all that belongs to a forest, when its [`Forest`] is removed.
+pub(super) fn remove_forest(
+    removed: On<Remove<Forest>>,
+    mut commands: Commands,
+    children: Query<&Children>,
+    cells: Query<(), With<ForestCell>>,
+) {
+    for child in children.get(removed.entity).into_iter().flatten().filter(|child| cells.contains(**child)) {
+        commands.entity(*child).try_despawn();
+    }
+    if let Ok(mut forest) = commands.get_entity(removed.entity) {
+        forest.try_remove::<ForestCells>();
+    }
+}

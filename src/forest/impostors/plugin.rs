@@ -1,0 +1,52 @@
+//! Registers the drawing of forests.
+
+use super::{
+    near_mask::update_near_mask,
+    species::{ImpostorSpeciesLibrary, bake_impostor_species},
+    tiles::{remove_impostors, stream_impostor_tiles},
+};
+use crate::{
+    forest::{
+        cells::plant_cells,
+        cull::{ForestCulling, cull_cells, measure_species},
+        diagnose::ForestGizmoPlugin,
+    },
+    render::{
+        RenderCapabilities, SwayBuffers,
+        impostors::{
+            material::{ImpostorExtension, ImpostorMaterial},
+            near_mask::NearMask,
+        },
+        lighting::{TreeLights, update_material_lights},
+    },
+    schedule::WindwoodSystems,
+    timing::timed,
+};
+use bevy::{pbr::MaterialPlugin, prelude::*, render::RenderApp};
+
+/// Draws the trees of [`Forest`](crate::forest::Forest)s that are too far to be entities, and hides near cells that nobody sees. Needs
+/// [`TreeRenderPlugin`](crate::render::TreeRenderPlugin). Without a renderer it only culls.
+pub struct ForestRenderPlugin;
+
+impl Plugin for ForestRenderPlugin {
+    fn build(&self, app: &mut App) {
+        let cull = timed!(app, measure_species, cull_cells);
+        app.add_plugins(ForestGizmoPlugin)
+            .register_type::<ForestCulling>()
+            .init_resource::<ForestCulling>()
+            .add_systems(PostUpdate, cull.chain().in_set(WindwoodSystems::Cull));
+        if app.get_sub_app(RenderApp).is_none() {
+            return;
+        }
+        let can_draw = resource_exists::<RenderCapabilities>.and_then(resource_exists::<SwayBuffers>);
+        app.add_plugins(MaterialPlugin::<ImpostorMaterial>::default())
+            .add_observer(remove_impostors)
+            .init_resource::<NearMask>()
+            .init_resource::<ImpostorSpeciesLibrary>();
+        let stream = timed!(app, bake_impostor_species, stream_impostor_tiles);
+        let mask = timed!(app, update_near_mask);
+        app.add_systems(Update, stream.chain().after(plant_cells).run_if(can_draw))
+            .add_systems(Update, update_material_lights::<ImpostorExtension>.run_if(resource_changed::<TreeLights>))
+            .add_systems(PostUpdate, mask.before(WindwoodSystems::Upload));
+    }
+}

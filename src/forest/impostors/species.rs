@@ -1,0 +1,153 @@
+//! The impostor atlas of each species that grows in a forest, baked in the background.
+
+use crate::{
+    forest::cells::ForestCells,
+    lod::{ImpostorAtlas, ImpostorSway, LodBakeSettings, Scene},
+    render::{
+        RenderCapabilities, SwayBuffers,
+        impostors::{
+            material::{AtlasImages, ImpostorMaterial, impostor_material},
+            mesh::MAX_VARIANTS,
+            near_mask::NearMask,
+        },
+        lighting::{LitAsTrees, TreeLights},
+    },
+    tree::{Species, TreeModel, bake_variants, growth::age::Age, textures::species_textures},
+};
+use bevy::{
+    platform::collections::HashMap,
+    prelude::*,
+    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+};
+
+/// The species of which there are impostors.
+#[derive(Resource, Default)]
+pub(super) struct ImpostorSpeciesLibrary {
+    species: HashMap<AssetId<Species>, ImpostorSpecies>,
+    baking: Vec<(AssetId<Species>, Task<Baked>)>,
+}
+
+/// The impostors of a species.
+pub(super) struct ImpostorSpecies {
+    pub material: Handle<ImpostorMaterial>,
+    /// How it ages: the atlas shows a mature tree, which is of size 1.
+    pub age: Age,
+    /// How far the mature tree reaches from its foot, m.
+    pub reach_m: f32,
+    /// How many variants the species has, and how many the atlas shows: the first ones.
+    pub variants: u32,
+    pub shown_variants: u32,
+}
+
+struct Baked {
+    species: Species,
+    atlas: AtlasImages,
+}
+
+impl ImpostorSpeciesLibrary {
+    pub fn get(&self, id: AssetId<Species>) -> Option<&ImpostorSpecies> {
+        self.species.get(&id)
+    }
+
+    /// Whether its atlas is baked or being baked.
+    fn is_known(&self, id: AssetId<Species>) -> bool {
+        self.species.contains_key(&id) || self.baking.iter().any(|(other, _)| *other == id)
+    }
+
+    fn remove(&mut self, id: AssetId<Species>) {
+        self.species.remove(&id);
+        self.baking.retain(|(other, _)| *other != id);
+    }
+
+    fn bake(&mut self, id: AssetId<Species>, species: &Species) {
+        let species = species.clone();
+        self.baking.retain(|(other, _)| *other != id);
+        self.baking.push((id, AsyncComputeTaskPool::get().spawn(async move { bake(species) })));
+    }
+}
+
+fn bake(species: Species) -> Baked {
+    let textures = species_textures(&species);
+    let models: Vec<TreeModel> =
+        bake_variants(&species, species.age.mature_years).take(MAX_VARIANTS as usize).collect();
+    let scenes: Vec<Scene> = models.iter().map(|model| Scene::new(&species, model, &textures)).collect();
+    let atlas = ImpostorAtlas::bake(&scenes, &LodBakeSettings::default().impostor);
+    let leans = scenes.iter().zip(&models).map(|(scene, model)| ImpostorSway::of(scene, model)).collect();
+    Baked { atlas: AtlasImages::new(&atlas, leans, textures.foliage_colour()), species }
+}
+
+/// Starts baking the atlas of species that have come or were changed, and takes over those that are baked.
+pub(super) fn bake_impostor_species(
+    mut library: ResMut<ImpostorSpeciesLibrary>,
+    mut images: ResMut<Assets<Image>>,
+    mut materials: ResMut<Assets<ImpostorMaterial>>,
+    mut events: MessageReader<AssetEvent<Species>>,
+    buffers: Res<SwayBuffers>,
+    capabilities: Res<RenderCapabilities>,
+    lights: Res<TreeLights>,
+    near_mask: Res<NearMask>,
+    species: Res<Assets<Species>>,
+    forests: Query<&ForestCells>,
+) {
+    if !capabilities.sways {
+        // Without storage buffers not even the layout of their material can be made.
+        return;
+    }
+    for event in events.read() {
+        match event {
+            // One that is being baked is baked anew: its atlas would be that of the species before.
+            AssetEvent::Modified { id } if library.is_known(*id) => {
+                if let Some(species) = species.get(*id).filter(|species| species.validate().is_ok()) {
+                    library.bake(*id, species);
+                }
+            }
+            AssetEvent::Removed { id } => library.remove(*id),
+            _ => {}
+        }
+    }
+    for handle in forests.iter().flat_map(ForestCells::species) {
+        let id = handle.id();
+        let is_known = library.is_known(id);
+        if let Some(species) = species.get(id).filter(|species| !is_known && species.validate().is_ok()) {
+            library.bake(id, species);
+        }
+    }
+    let ImpostorSpeciesLibrary { species: baked, baking } = &mut *library;
+    baking.retain_mut(|(id, task)| {
+        let Some(Baked { species, atlas }) = block_on(poll_once(task)) else { return true };
+        let (frame, shown_variants) = (atlas.frame, atlas.variants);
+        let mut material = impostor_material(&species, atlas, &mut images, &buffers, near_mask.buffer.clone());
+        *material.extension.lights_mut() = *lights;
+        // Wherever it leans.
+        let reach_m = frame.centre.length() + frame.radius_m + frame.half_height_m;
+        let handle = match baked.get(id) {
+            Some(before) => {
+                if let Some(mut in_use) = materials.get_mut(&before.material) {
+                    *in_use = material;
+                }
+                before.material.clone()
+            }
+            None => materials.add(material),
+        };
+        let (age, variants) = (species.age, species.variants);
+        baked.insert(*id, ImpostorSpecies { material: handle, age, reach_m, variants, shown_variants });
+        false
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_atlas_fits_into_a_texture_of_any_device_with_storage_buffers() {
+        let species = Species::default();
+        let textures = species_textures(&species);
+        let model = TreeModel::bake(&species, 3.0, 1);
+        let scenes: Vec<Scene> = (0..MAX_VARIANTS).map(|_| Scene::new(&species, &model, &textures)).collect();
+        let atlas = ImpostorAtlas::bake(&scenes, &LodBakeSettings::default().impostor);
+        assert!(atlas.has_bare, "it sheds its leaves: most views that there are");
+        // `maxTextureDimension2D` of WebGPU.
+        assert!(atlas.coverage.width.max(atlas.coverage.height) <= 8192, "{:?}", atlas.coverage.height);
+    }
+}

@@ -1,0 +1,108 @@
+//! Patches of grass, and their blades, which are laid out in the background.
+
+use super::{
+    blades::{Blade, layout_blades},
+    settings::{GrassLook, GrassResponse, Sward},
+};
+use crate::setting::SettingError;
+use bevy::{
+    prelude::*,
+    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+};
+use std::sync::Arc;
+
+/// A patch of grass about this entity, drawn as one. The entity's transform is the plane it grows on, unless it has a
+/// [`GrassGround`].
+///
+/// A patch with a setting out of range is refused with one warning; the last good meadow stays.
+#[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
+#[reflect(Component, Default)]
+#[require(Transform, Visibility)]
+pub struct GrassPatch {
+    /// Where the blades stand, their sizes and shapes. A change lays them out again, in the background.
+    pub sward: Sward,
+    /// Colours and distances.
+    pub look: GrassLook,
+    /// How the blades respond to the wind.
+    pub response: GrassResponse,
+}
+
+impl GrassPatch {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// The first field outside its domain.
+    pub fn validate(&self) -> Result<(), SettingError> {
+        self.sward.validate().map_err(|error| error.inside("sward"))?;
+        self.look.validate().map_err(|error| error.inside("look"))?;
+        self.response.validate().map_err(|error| error.inside("response"))
+    }
+}
+
+/// Uneven ground under a [`GrassPatch`]: the height, m, at the patch's own (x, z), both in the patch's coordinates. Heights
+/// are read once, when the blades are laid out; insert another `GrassGround` to have them laid out again. Where the height
+/// is not a number, nothing grows: ponds, paths, hearths. Called on a background thread.
+#[derive(Component, Clone)]
+pub struct GrassGround(pub Arc<dyn Fn(Vec2) -> f32 + Send + Sync>);
+
+/// The blades of a patch. Written in [`WindwoodSystems::Bake`](crate::WindwoodSystems::Bake).
+#[derive(Component, Clone, Debug)]
+#[component(immutable)]
+pub struct Meadow {
+    /// The blades, in the order of their rank: every prefix is a thinner meadow.
+    pub blades: Arc<Vec<Blade>>,
+    /// The patch that they were laid out for: its settings are valid.
+    pub patch: GrassPatch,
+}
+
+/// A meadow that is being laid out in the background.
+#[derive(Component)]
+pub(super) struct MeadowLayout(Task<Meadow>);
+
+/// Starts to lay out meadows that are new or have changed.
+pub(super) fn start_meadow_layouts(
+    mut commands: Commands,
+    patches: Query<
+        (Entity, Ref<GrassPatch>, Option<Ref<GrassGround>>, Option<&Meadow>),
+        Or<(Changed<GrassPatch>, Changed<GrassGround>)>,
+    >,
+) {
+    for (entity, patch, ground, meadow) in &patches {
+        if let Err(error) = patch.validate() {
+            warn!("grass patch {entity}: {error}; the last good meadow stays");
+            continue;
+        }
+        let is_ground_new = ground.as_ref().is_some_and(Ref::is_changed);
+        if let Some(meadow) = meadow.filter(|meadow| meadow.patch.sward == patch.sward && !is_ground_new) {
+            // Only the look has changed: the blades stay, and a layout that runs is out of date.
+            let blades = meadow.blades.clone();
+            commands
+                .entity(entity)
+                .remove::<MeadowLayout>()
+                .insert(Meadow { blades, patch: GrassPatch::clone(&patch) });
+            continue;
+        }
+        let (patch, ground) = (GrassPatch::clone(&patch), ground.map(|ground| ground.0.clone()));
+        let task = AsyncComputeTaskPool::get().spawn(async move {
+            let height_m = |at: Vec2| ground.as_ref().map_or(0.0, |ground| ground(at));
+            Meadow { blades: Arc::new(layout_blades(&patch.sward, height_m)), patch }
+        });
+        commands.entity(entity).insert(MeadowLayout(task));
+    }
+}
+
+/// Takes over meadows that have been laid out.
+pub(super) fn finish_meadow_layouts(mut commands: Commands, mut layouts: Query<(Entity, &mut MeadowLayout)>) {
+    for (entity, mut layout) in &mut layouts {
+        if let Some(meadow) = block_on(poll_once(&mut layout.0)) {
+            commands.entity(entity).remove::<MeadowLayout>().insert(meadow);
+        }
+    }
+}
+
+/// Removes the meadow of a patch that is removed.
+pub(super) fn remove_meadow(removed: On<Remove<GrassPatch>>, mut commands: Commands) {
+    if let Ok(mut entity) = commands.get_entity(removed.entity) {
+        entity.try_remove::<(MeadowLayout, Meadow)>();
+    }
+}

@@ -1,0 +1,154 @@
+//! A table on the CPU side of a GPU buffer that knows which of its rows have to be uploaded.
+
+/// Two uploads are joined where no more unchanged rows than this lie between them: one copy costs more than a few rows.
+const MAX_GAP_ROWS: u32 = 16;
+/// Capacity of the first buffer, rows.
+const FIRST_CAPACITY: u32 = 256;
+
+/// The capacity for so many rows: half as many again, so that a growing table seldom needs another buffer.
+pub(crate) fn with_reserve(count: u32) -> u32 {
+    count + count / 2
+}
+
+/// Rows, and which of them were written since the last upload.
+pub(crate) struct DirtyTable<T> {
+    rows: Vec<T>,
+    /// Rows that were written, each once, in any order.
+    written: Vec<u32>,
+    is_written: Vec<bool>,
+    /// Rows that the GPU buffer holds.
+    capacity: u32,
+}
+
+impl<T> Default for DirtyTable<T> {
+    fn default() -> Self {
+        Self { rows: Vec::new(), written: Vec::new(), is_written: Vec::new(), capacity: 0 }
+    }
+}
+
+impl<T: Copy + Default> DirtyTable<T> {
+    #[cfg(test)]
+    pub fn rows(&self) -> &[T] {
+        &self.rows
+    }
+
+    pub fn len(&self) -> u32 {
+        self.rows.len() as u32
+    }
+
+    /// Size of the GPU buffer, bytes.
+    pub fn bytes(&self) -> usize {
+        self.capacity as usize * size_of::<T>()
+    }
+
+    /// Whether there is anything to upload.
+    pub fn is_dirty(&self) -> bool {
+        !self.written.is_empty()
+    }
+
+    /// Appends default rows up to a length.
+    pub fn grow_to(&mut self, length: u32) {
+        for row in self.len()..length {
+            self.rows.push(T::default());
+            self.is_written.push(true);
+            self.written.push(row);
+        }
+    }
+
+    /// Drops the rows from `length` on. Their values stay in the GPU buffer, where nothing reads them.
+    pub fn truncate(&mut self, length: u32) {
+        self.rows.truncate(length as usize);
+        self.is_written.truncate(length as usize);
+        self.written.retain(|row| *row < length);
+    }
+
+    pub fn get(&self, row: u32) -> Option<&T> {
+        self.rows.get(row as usize)
+    }
+
+    /// A row to write. It counts as written.
+    pub fn get_mut(&mut self, row: u32) -> Option<&mut T> {
+        let is_written = self.is_written.get_mut(row as usize)?;
+        if !std::mem::replace(is_written, true) {
+            self.written.push(row);
+        }
+        self.rows.get_mut(row as usize)
+    }
+
+    pub fn write(&mut self, row: u32, to: T) {
+        if let Some(there) = self.get_mut(row) {
+            *there = to;
+        }
+    }
+
+    /// Grows the capacity if the rows have outgrown it, with a reserve. Returns whether it did: then the GPU buffer has to be
+    /// replaced, and all rows count as written.
+    pub fn grow_capacity(&mut self) -> bool {
+        if self.len() <= self.capacity {
+            return false;
+        }
+        self.capacity = with_reserve(self.len()).max(FIRST_CAPACITY);
+        self.written.clear();
+        self.written.extend(0..self.rows.len() as u32);
+        self.is_written.fill(true);
+        true
+    }
+
+    /// Uploads what was written, run by run: the number of the first row, and the rows.
+    pub fn upload(&mut self, mut upload: impl FnMut(u32, &[T])) {
+        let Self { rows, written, is_written, .. } = self;
+        written.sort_unstable();
+        for run in written.chunk_by(|before, after| after - before <= MAX_GAP_ROWS + 1) {
+            if let [first, .., last] | [first @ last] = run {
+                upload(*first, &rows[*first as usize..=*last as usize]);
+            }
+        }
+        written.drain(..).for_each(|row| is_written[row as usize] = false);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
+
+    #[test]
+    fn uploads_make_the_copy_equal() {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
+        let (mut table, mut copy) = (DirtyTable::<u32>::default(), Vec::new());
+        for round in 0..300 {
+            match random.random_range(0..8) {
+                0 => table.grow_to(table.len() + random.random_range(0..200)),
+                1 => table.truncate(table.len() - table.len() / 5),
+                _ => {}
+            }
+            for _ in 0..random.random_range(0..20) {
+                let row = random.random_range(0..table.len().max(1));
+                if let Some(row) = table.get_mut(row) {
+                    *row = round;
+                }
+            }
+            if table.grow_capacity() {
+                copy = vec![u32::MAX; table.capacity as usize];
+            }
+            table.upload(|first, rows| copy[first as usize..][..rows.len()].copy_from_slice(rows));
+            assert_eq!(copy[..table.rows().len()], *table.rows(), "round {round}");
+            assert!(!table.is_dirty());
+        }
+    }
+
+    #[test]
+    fn close_runs_are_joined_and_distant_ones_are_not() {
+        let mut table = DirtyTable::<u32>::default();
+        table.grow_to(1000);
+        table.grow_capacity();
+        table.upload(|_, _| ());
+        for row in [700, 3, 4, 4 + MAX_GAP_ROWS + 1, 900, 700] {
+            table.get_mut(row);
+        }
+        let mut runs = Vec::new();
+        table.upload(|first, rows| runs.push((first, rows.len() as u32)));
+        assert_eq!(runs, [(3, MAX_GAP_ROWS + 3), (700, 1), (900, 1)]);
+        table.upload(|_, _| panic!("nothing is dirty"));
+    }
+}

@@ -1,0 +1,51 @@
+//! What the device can do.
+
+use crate::render::instances::rows::POSE_BYTES;
+use bevy::{
+    prelude::*,
+    render::{
+        RenderApp,
+        batching::gpu_preprocessing::{GpuPreprocessingMode, GpuPreprocessingSupport},
+        renderer::RenderDevice,
+    },
+};
+
+/// How this machine can draw trees. It is found out once, when the app starts.
+#[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RenderCapabilities {
+    /// Whether vertex shaders can read the wind tables. If not, trees stand still in a standard material.
+    pub sways: bool,
+    /// Whether the GPU does the frustum culling, so that the CPU need not.
+    pub culls_on_gpu: bool,
+    /// Beams that can be posed at once, over all trees that are seen; trees beyond that stand still.
+    pub max_poses: u32,
+    /// Size of the largest table that a shader can read, bytes.
+    pub max_table_bytes: u64,
+}
+
+/// Storage buffers that a shader stage needs: seven for the pose pass; to draw, our four and Bevy's own for meshes, instances and
+/// skins.
+pub(crate) const STORAGE_BUFFERS_NEEDED: u32 = 8;
+
+impl RenderCapabilities {
+    /// Those of the app's device; none without a renderer.
+    pub(crate) fn of(app: &App) -> Option<Self> {
+        let render_world = app.get_sub_app(RenderApp)?.world();
+        let limits = render_world.get_resource::<RenderDevice>()?.limits();
+        let sways = limits.max_storage_buffers_per_shader_stage >= STORAGE_BUFFERS_NEEDED;
+        if !sways {
+            warn!(
+                "windwood: this device has {} storage buffers a shader stage and swaying trees need {STORAGE_BUFFERS_NEEDED}; \
+                 trees stand still",
+                limits.max_storage_buffers_per_shader_stage
+            );
+        }
+        let culls_on_gpu = render_world
+            .get_resource::<GpuPreprocessingSupport>()
+            .is_some_and(|support| support.max_supported_mode == GpuPreprocessingMode::Culling);
+        // Poses have two halves, and half as many again in reserve.
+        let max_table_bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let max_poses = u32::try_from(max_table_bytes / (3 * POSE_BYTES as u64)).unwrap_or(u32::MAX);
+        Some(Self { sways, culls_on_gpu, max_poses, max_table_bytes })
+    }
+}

@@ -1,0 +1,142 @@
+//! Spawns and swaps the meshes of trees: one for the wood and one for the leaves of a level. All trees with a model and a level are drawn in
+//! one batch.
+
+use super::components::{DrawnTree, TreeMeshOf, TreeMeshes, TreePart};
+use crate::{
+    render::{
+        capabilities::RenderCapabilities,
+        instances::{
+            components::{HasImpostor, TreeInstance},
+            tag::{Fading, pack_tag},
+        },
+        lod::thresholds::LodSelection,
+        species::library::{PreparedMesh, PreparedVariant, SpeciesLibrary},
+    },
+    tree::Tree,
+};
+use bevy::{
+    camera::visibility::{NoCpuCulling, RenderLayers},
+    mesh::MeshTag,
+    prelude::*,
+};
+
+/// What the meshes of a tree follow from.
+type Drawn = (
+    Entity,
+    &'static Tree,
+    Ref<'static, TreeInstance>,
+    &'static LodSelection,
+    &'static mut DrawnTree,
+    Has<HasImpostor>,
+    Option<&'static RenderLayers>,
+    Option<&'static TreeMeshes>,
+);
+
+/// Draws the levels that were selected for trees.
+pub(crate) fn update_tree_meshes(
+    mut commands: Commands,
+    library: Res<SpeciesLibrary>,
+    capabilities: Res<RenderCapabilities>,
+    mut trees: Query<Drawn, Or<(Changed<LodSelection>, Changed<TreeInstance>, Changed<DrawnTree>)>>,
+    mut visibilities: Query<&mut Visibility, With<TreeMeshOf>>,
+) {
+    for (entity, tree, instance, selection, mut drawn, has_impostor, layers, meshes) in &mut trees {
+        let Some(variant) = library.variant(tree.species.id(), instance.model) else { continue };
+        // With another instance everything is another.
+        let before = drawn.selection.filter(|_| !instance.is_changed());
+        if before == Some(*selection) {
+            continue;
+        }
+        let meshes = meshes.into_iter().flat_map(TreeMeshes::iter);
+        let is_same = |before: &LodSelection| (before.lod, before.is_fading) == (selection.lod, selection.is_fading);
+        if before.as_ref().is_some_and(is_same) {
+            // Only the impostor comes or goes.
+            let visibility = mesh_visibility(selection);
+            meshes.for_each(|mesh| {
+                if let Ok(mut it) = visibilities.get_mut(mesh) {
+                    it.set_if_neq(visibility);
+                }
+            });
+            drawn.bypass_change_detection().selection = Some(*selection);
+            continue;
+        }
+        meshes.for_each(|mesh| commands.entity(mesh).despawn());
+        let spawner = MeshSpawner {
+            tree: entity,
+            instance: &instance,
+            variant,
+            selection,
+            has_impostor,
+            layers,
+            capabilities: *capabilities,
+        };
+        let mesh_count = spawner.spawn(&mut commands);
+        *drawn.bypass_change_detection() = DrawnTree { selection: Some(*selection), mesh_count };
+    }
+}
+
+fn mesh_visibility(selection: &LodSelection) -> Visibility {
+    if selection.is_impostor { Visibility::Hidden } else { Visibility::Inherited }
+}
+
+/// Spawns the meshes of a tree.
+struct MeshSpawner<'a> {
+    tree: Entity,
+    instance: &'a TreeInstance,
+    variant: &'a PreparedVariant,
+    selection: &'a LodSelection,
+    has_impostor: bool,
+    layers: Option<&'a RenderLayers>,
+    capabilities: RenderCapabilities,
+}
+
+impl MeshSpawner<'_> {
+    /// Spawns the selected level, and the one that it fades into. Returns the number of meshes.
+    fn spawn(&self, commands: &mut Commands) -> u8 {
+        let LodSelection { lod, is_fading, .. } = *self.selection;
+        let Some(level) = self.variant.lods.get(usize::from(lod)) else { return 0 };
+        let fading = if is_fading { Fading::OUT } else { self.end_of(lod) };
+        let mut count = self.spawn_mesh(TreePart::Wood, &level.wood, lod, fading, commands);
+        if let Some(leaves) = &level.leaves {
+            count += self.spawn_mesh(TreePart::Leaves, leaves, lod, fading, commands);
+        }
+        let next = lod + 1;
+        let Some(level) = self.variant.lods.get(usize::from(next)).filter(|_| is_fading) else { return count };
+        let fading = Fading::IN.and(self.end_of(next));
+        if !level.is_wood_nested {
+            count += self.spawn_mesh(TreePart::Wood, &level.wood, next, fading, commands);
+        }
+        if let Some(leaves) = &level.leaves {
+            count += self.spawn_mesh(TreePart::Leaves, leaves, next, fading, commands);
+        }
+        count
+    }
+
+    /// How a level ends that fades into no other.
+    fn end_of(&self, lod: u8) -> Fading {
+        if self.has_impostor && lod + 1 == self.instance.lod_count { Fading::TO_IMPOSTOR } else { Fading::NONE }
+    }
+
+    /// Spawns a mesh with all that it needs at once, since each insertion moves an entity in memory.
+    fn spawn_mesh(&self, part: TreePart, mesh: &PreparedMesh, lod: u8, fading: Fading, commands: &mut Commands) -> u8 {
+        let row = self.instance.row;
+        let fading = if mesh.can_fade && row.is_some() { fading } else { Fading::NONE };
+        let tag = pack_tag(row.unwrap_or(0), lod, fading, self.instance.tint);
+        // The box holds all poses in the winds that blow; the mesh's own would cull a tree that leans into the view.
+        let entity = (
+            (TreeMeshOf(self.tree), ChildOf(self.tree), part, mesh_visibility(self.selection)),
+            (Mesh3d(mesh.mesh.clone()), MeshTag::new(tag), self.variant.bounds),
+        );
+        let mut spawned = match &mesh.materials.swaying {
+            Some(swaying) if row.is_some() => commands.spawn((entity, MeshMaterial3d(swaying.clone()))),
+            _ => commands.spawn((entity, MeshMaterial3d(mesh.materials.still.clone()))),
+        };
+        if self.capabilities.culls_on_gpu {
+            spawned.insert(NoCpuCulling);
+        }
+        if let Some(layers) = self.layers {
+            spawned.insert(layers.clone());
+        }
+        1
+    }
+}

@@ -1,0 +1,245 @@
+//! Uploads what changed: the values of the frame, the tables of a wind when a new one begins, and the rows of those trees that come, go,
+//! move, or become visible or hidden.
+
+use super::pose_pass::{PoseBuffers, PoseDispatch};
+use crate::{
+    background::drop_in_background,
+    render::{
+        buffers::{
+            buffer_writes::BufferWrites,
+            dirty_table::{DirtyTable, with_reserve},
+            sway_buffers::{FIRST_BYTES, SwayBuffers, empty_buffer},
+        },
+        capabilities::RenderCapabilities,
+        gpu::wind_table::pack_wind,
+        instances::{
+            rows::{FrameRow, MAX_VIEWERS, POSE_BYTES},
+            tables::InstanceTables,
+        },
+        lod::{thresholds::HEIGHT_TOLERANCE, viewers::LodViewers},
+    },
+    sway::{ActiveSway, WindResponse, leaf_clock_s, wrapped_time_s},
+    tree::Season,
+    wind::WindClock,
+};
+use bevy::{
+    asset::RenderAssetUsages,
+    ecs::system::SystemParam,
+    prelude::*,
+    render::storage::ShaderBuffer,
+    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+};
+use bytemuck::Pod;
+use std::sync::Arc;
+
+/// What was uploaded so far.
+#[derive(Resource)]
+pub(crate) struct UploadState {
+    workgroups: Handle<ShaderBuffer>,
+    /// Poses that a half of the buffer holds.
+    pose_capacity: u32,
+    /// Whether the first half is this frame's.
+    is_first_half: bool,
+    /// The winds in the slots A and B.
+    winds: [Option<Arc<WindResponse>>; 2],
+    /// What the last frame was posed for: time, and weight of slot B.
+    posed: Option<(f64, f32)>,
+    /// Whether the winds of the slots fit on this device.
+    fits: [bool; 2],
+}
+
+impl FromWorld for UploadState {
+    fn from_world(world: &mut World) -> Self {
+        Self {
+            workgroups: empty_buffer(&mut world.resource_mut::<Assets<ShaderBuffer>>()),
+            pose_capacity: 0,
+            is_first_half: false,
+            winds: [None, None],
+            posed: None,
+            fits: [true; 2],
+        }
+    }
+}
+
+impl FromWorld for PoseDispatch {
+    fn from_world(world: &mut World) -> Self {
+        let workgroups = world.resource::<UploadState>().workgroups.clone();
+        let shared = world.resource::<SwayBuffers>().clone();
+        Self { buffers: PoseBuffers { shared, workgroups }, workgroups: 0, is_previous_due: true }
+    }
+}
+
+/// The incoming wind's tables as one buffer, packed in the background: they are some 20 MB.
+#[derive(Resource, Default)]
+pub(crate) struct PackedWind(Option<(Arc<WindResponse>, Packing)>);
+
+enum Packing {
+    Running(Task<Vec<u8>>),
+    Done(Vec<u8>),
+}
+
+impl PackedWind {
+    /// The packed tables of a wind, once; they are packed now if they were not before.
+    fn take(&mut self, response: &Arc<WindResponse>) -> Vec<u8> {
+        match self.0.take_if(|(packed, _)| Arc::ptr_eq(packed, response)) {
+            Some((_, Packing::Done(packed))) => packed,
+            Some((_, Packing::Running(task))) => block_on(task),
+            None => pack_wind(response),
+        }
+    }
+}
+
+/// Packs the tables of an incoming wind in the background, and lets it begin once that is done.
+pub(crate) fn pack_incoming_wind(mut sway: ResMut<ActiveSway>, mut packed: ResMut<PackedWind>) {
+    let Some(incoming) = sway.incoming().cloned() else { return };
+    match &mut packed.0 {
+        Some((response, packing)) if Arc::ptr_eq(response, &incoming) => {
+            if let Packing::Running(task) = packing
+                && let Some(bytes) = block_on(poll_once(task))
+            {
+                *packing = Packing::Done(bytes);
+                sway.release_incoming();
+            }
+        }
+        other => {
+            let response = incoming.clone();
+            let task = AsyncComputeTaskPool::get().spawn(async move { pack_wind(&response) });
+            *other = Some((incoming, Packing::Running(task)));
+        }
+    }
+}
+
+/// Buffers, and how they are written.
+#[derive(SystemParam)]
+pub(crate) struct Uploads<'w> {
+    shared: Res<'w, SwayBuffers>,
+    state: ResMut<'w, UploadState>,
+    buffers: ResMut<'w, Assets<ShaderBuffer>>,
+    writes: ResMut<'w, BufferWrites>,
+}
+
+impl Uploads<'_> {
+    /// Uploads the rows of a table that were written. A table that has outgrown its buffer gets another.
+    fn upload<T: Pod + Default>(&mut self, handle: &Handle<ShaderBuffer>, table: &mut DirtyTable<T>) {
+        if table.grow_capacity() {
+            self.replace(handle, table.bytes() as u64);
+        }
+        let size = table.bytes() as u64;
+        table.upload(|first, rows| {
+            let offset = u64::from(first) * size_of::<T>() as u64;
+            self.writes.write(handle, size, offset, bytemuck::cast_slice(rows));
+        });
+    }
+
+    /// Grows the buffer of poses, with a reserve.
+    fn grow_poses(&mut self, poses: u32) {
+        if poses > self.state.pose_capacity {
+            self.state.pose_capacity = with_reserve(poses);
+            let handle = self.shared.poses.clone();
+            self.replace(&handle, 2 * u64::from(self.state.pose_capacity) * POSE_BYTES as u64);
+        }
+    }
+
+    /// Puts a buffer of another size in the place of one.
+    fn replace(&mut self, handle: &Handle<ShaderBuffer>, bytes: u64) {
+        if let Some(mut buffer) = self.buffers.get_mut(handle) {
+            *buffer = ShaderBuffer::with_size(bytes, RenderAssetUsages::RENDER_WORLD);
+        }
+    }
+}
+
+/// Rewrites a slot when another wind has moved into it; its weight is 0 at that moment. Under a wind whose tables are too large for the
+/// device trees stand at rest.
+pub(crate) fn upload_winds(
+    sway: Res<ActiveSway>,
+    capabilities: Res<RenderCapabilities>,
+    mut packed: ResMut<PackedWind>,
+    mut has_warned: Local<bool>,
+    mut uploads: Uploads,
+) {
+    for (slot, response) in sway.slots().into_iter().enumerate() {
+        let Some(response) = response else { continue };
+        if uploads.state.winds[slot].as_ref().is_some_and(|uploaded| Arc::ptr_eq(uploaded, response)) {
+            continue;
+        }
+        let packed = packed.take(response);
+        let (bytes, limit) = (packed.len() as u64, capabilities.max_table_bytes);
+        uploads.state.fits[slot] = bytes <= limit;
+        if bytes <= limit {
+            let handle = uploads.shared.winds[slot].clone();
+            if let Some(mut buffer) = uploads.buffers.get_mut(&handle) {
+                *buffer = ShaderBuffer::new(packed, RenderAssetUsages::RENDER_WORLD);
+            }
+        } else if !*has_warned {
+            warn!("windwood: the tables of this wind have {bytes} bytes, the device allows {limit}; trees stand still");
+            *has_warned = true;
+        }
+        uploads.state.winds[slot].replace(response.clone()).into_iter().for_each(drop_in_background);
+    }
+}
+
+/// Uploads the rows that were written since the last frame, and the values of this one.
+pub(crate) fn upload_frame(
+    sway: Res<ActiveSway>,
+    clock: Res<WindClock>,
+    season: Res<Season>,
+    viewers: Res<LodViewers>,
+    mut tables: ResMut<InstanceTables>,
+    mut uploads: Uploads,
+    mut dispatch: ResMut<PoseDispatch>,
+) {
+    let tables = &mut *tables;
+    let has_new_rows = tables.trees.is_dirty() || tables.beams.is_dirty();
+    tables.compact();
+    let (shared, workgroups) = (uploads.shared.clone(), uploads.state.workgroups.clone());
+    uploads.upload(&shared.trees, &mut tables.trees);
+    uploads.upload(&shared.beams, &mut tables.beams);
+    uploads.upload(&workgroups, &mut tables.workgroups.table);
+    uploads.grow_poses(tables.pose_count());
+
+    let state = &mut *uploads.state;
+    let [blend, previous_blend] = sway.blends();
+    state.is_first_half = !state.is_first_half;
+    dispatch.workgroups = tables.workgroups.table.len();
+    dispatch.is_previous_due = has_new_rows || state.posed != Some((clock.previous_s, previous_blend));
+    state.posed = Some((clock.time_s, blend));
+    let row = frame_row(&sway, &clock, &season, &viewers, state, dispatch.workgroups);
+    uploads.writes.write(&shared.frame, FIRST_BYTES, 0, bytemuck::bytes_of(&row));
+}
+
+fn frame_row(
+    sway: &ActiveSway,
+    clock: &WindClock,
+    season: &Season,
+    viewers: &LodViewers,
+    state: &UploadState,
+    workgroup_count: u32,
+) -> FrameRow {
+    let [a, b] = sway.slots();
+    let seconds = |slot: Option<&Arc<WindResponse>>, time_s: f64| {
+        slot.map_or(0.0, |response| wrapped_time_s(response, time_s) as f32)
+    };
+    let (now, before) = (clock.time_s, clock.previous_s);
+    let halves = if state.is_first_half { [0, state.pose_capacity] } else { [state.pose_capacity, 0] };
+    let mut row = FrameRow {
+        time_s: [seconds(a, now), seconds(b, now), seconds(a, before), seconds(b, before)],
+        blend: sway.blends(),
+        leaf_time_s: [leaf_clock_s(now), leaf_clock_s(before)],
+        poses_now: halves[0],
+        poses_before: halves[1],
+        ready: u32::from(sway.is_ready() && state.fits == [true; 2]),
+        workgroup_count,
+        year: season.wrapped(),
+        lod_ends: viewers.thresholds.ends,
+        impostors_from_m: viewers.thresholds.impostors_from_m,
+        fade: viewers.thresholds.fade,
+        height_tolerance: HEIGHT_TOLERANCE,
+        viewer_count: 0,
+        viewers: [[0.0; 4]; MAX_VIEWERS],
+    };
+    for (place, viewer) in row.viewers.iter_mut().zip(viewers.iter()) {
+        *place = viewer.eye.extend(viewer.factor()).to_array();
+        row.viewer_count += 1;
+    }
+    row
+}

@@ -1,0 +1,23 @@
+//! What a tree has among the tables: components that our systems put on it.
+
+use crate::tree::TreeModel;
+use bevy::prelude::*;
+
+/// A tree that can be drawn: its model is prepared. It is our own; a clone of the tree gets one of its own.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+#[component(immutable, clone_behavior = Ignore)]
+pub(crate) struct TreeInstance {
+    /// The model that it was assigned for.
+    pub model: AssetId<TreeModel>,
+    /// Its row in the tables; none where trees stand still. Taking the component away frees the row.
+    pub row: Option<u32>,
+    /// How many LOD levels it has.
+    pub lod_count: u8,
+    /// Its height while its scale is 1, m.
+    pub height_m: f32,
+    pub tint: u8,
+}
+
+/// A tree for which an impostor stands from [`ImpostorRange`](crate::render::lod::impostor_range::ImpostorRange) on.
+#[derive(Component, Clone, Copy)]
+pub(crate) struct HasImpostor;

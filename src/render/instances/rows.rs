@@ -1,0 +1,117 @@
+//! Rows of the GPU tables. `render/shaders/instances.wesl` has the same layouts.
+
+use crate::dynamics::pose::BeamDynamics;
+use bytemuck::{Pod, Zeroable};
+
+/// `BeamRow` of the shader: one beam of a model.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct BeamRow {
+    base: [f32; 3],
+    length_m: f32,
+    direction: [f32; 3],
+    attach: f32,
+    gain: f32,
+    class_coordinate: f32,
+    parent: u32,
+    padding: u32,
+}
+
+impl From<&BeamDynamics> for BeamRow {
+    fn from(beam: &BeamDynamics) -> Self {
+        Self {
+            base: beam.base.to_array(),
+            length_m: beam.length_m,
+            direction: beam.direction.to_array(),
+            attach: beam.attach,
+            gain: beam.gain,
+            class_coordinate: beam.class,
+            parent: beam.parent,
+            padding: 0,
+        }
+    }
+}
+
+/// `Frame` of the shader: the values of one frame.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct FrameRow {
+    /// Now and one frame ago, s, each wrapped into the periods of slot A and slot B: a now, b now, a before, b before.
+    pub time_s: [f32; 4],
+    /// Weight of slot B now and one frame ago.
+    pub blend: [f32; 2],
+    /// Now and one frame ago in the period of the leaves' flutter, s.
+    pub leaf_time_s: [f32; 2],
+    /// First pose of this frame's half and of the last frame's.
+    pub poses_now: u32,
+    pub poses_before: u32,
+    /// 1 once there is a wind, 0 before.
+    pub ready: u32,
+    /// Workgroups of the pose pass.
+    pub workgroup_count: u32,
+    /// Time of the year, 0..1.
+    pub year: f32,
+    /// Where LOD levels 0, 1 and 2 of a tree end, per metre of its height.
+    pub lod_ends: [f32; 3],
+    /// No impostor stands for a tree nearer than this, m.
+    pub impostors_from_m: f32,
+    /// Levels fade over this share of a distance, to either side.
+    pub fade: f32,
+    /// Heights of a tree and its impostor differ by less than this factor.
+    pub height_tolerance: f32,
+    /// Of `viewers`, those that are set.
+    pub viewer_count: u32,
+    /// The cameras: place, and the factor of [`LodViewer::factor`](crate::render::lod::viewers::LodViewer::factor).
+    pub viewers: [[f32; 4]; MAX_VIEWERS],
+}
+
+/// `TreeRow` of the shader: one tree. A row without beams is unused, or that of a tree without poses, which stands at rest.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct TreeRow {
+    pub rotation: [f32; 4],
+    pub position: [f32; 3],
+    /// Negative for a tree that is mirrored.
+    pub scale: f32,
+    pub first_beam: u32,
+    pub beam_count: u32,
+    pub first_pose: u32,
+    /// See [`TreeRow::season_and_height`].
+    pub season_and_height: u32,
+}
+
+impl TreeRow {
+    /// How far it is ahead of the season, -0.5 to 0.5 years in steps of 8 minutes, and its height, m, to 256 m in steps of
+    /// 4 mm.
+    pub fn season_and_height(season_shift: f32, height_m: f32) -> u32 {
+        let season = (season_shift * 65_536.0 + 32_768.0).round().clamp(0.0, 65_535.0) as u32;
+        let height = (height_m * 256.0).round().clamp(0.0, 65_535.0) as u32;
+        season | height << 16
+    }
+}
+
+/// Size of a `BeamPose` of the shader: three vec4.
+pub(crate) const POSE_BYTES: usize = 48;
+
+/// Cameras whose picture sizes the shaders know.
+pub(crate) const MAX_VIEWERS: usize = 8;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_have_the_sizes_of_the_shader() {
+        assert_eq!(size_of::<BeamRow>(), 48);
+        assert_eq!(size_of::<FrameRow>(), 208);
+        assert_eq!(size_of::<TreeRow>(), 48);
+    }
+
+    #[test]
+    fn season_and_height_are_packed_into_a_word() {
+        let word = TreeRow::season_and_height(-0.25, 31.5);
+        assert_eq!(((word & 0xffff) as f32 - 32_768.0) / 65_536.0, -0.25);
+        assert_eq!((word >> 16) as f32 / 256.0, 31.5);
+        assert_eq!(TreeRow::season_and_height(f32::NAN, -3.0), 0);
+    }
+}

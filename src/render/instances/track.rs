@@ -1,0 +1,62 @@
+//! Keeps the tables up to date with trees that move, and poses those that are visible.
+
+use super::{components::TreeInstance, tables::InstanceTables};
+use crate::{
+    render::{capabilities::RenderCapabilities, lod::thresholds::LodSelection},
+    tree::Tree,
+};
+use bevy::prelude::*;
+
+/// Scales may differ by this share before a tree counts as stretched.
+const UNIFORM_TOLERANCE: f32 = 1e-3;
+
+/// Writes the transforms of trees that are new, were changed or have moved.
+pub(crate) fn write_tree_transforms(
+    mut tables: ResMut<InstanceTables>,
+    mut has_warned: Local<bool>,
+    trees: Query<
+        (Entity, &TreeInstance, &Tree, &GlobalTransform),
+        Or<(Changed<GlobalTransform>, Changed<Tree>, Changed<TreeInstance>)>,
+    >,
+) {
+    for (entity, instance, tree, at) in &trees {
+        let Some(row) = instance.row else { continue };
+        tables.write_transform(row, at, tree.season_shift(), instance.height_m);
+        if !*has_warned && !is_uniform(at.scale()) {
+            warn!(
+                "windwood: tree {entity} has the scale {}, but a tree in the wind has one scale for all axes; the nearest \
+                 is used, for this and for any other such tree",
+                at.scale()
+            );
+            *has_warned = true;
+        }
+    }
+}
+
+fn is_uniform(scale: Vec3) -> bool {
+    let scale = scale.abs();
+    scale.max_element() - scale.min_element() <= UNIFORM_TOLERANCE * scale.max_element()
+}
+
+/// Poses trees that become visible, and no longer those that are hidden: by the game, by a cell that nobody sees, or because their
+/// impostor stands for them.
+pub(crate) fn update_posed_trees(
+    mut tables: ResMut<InstanceTables>,
+    capabilities: Res<RenderCapabilities>,
+    mut has_warned: Local<bool>,
+    trees: Query<
+        (&TreeInstance, &InheritedVisibility, &LodSelection),
+        Or<(Changed<InheritedVisibility>, Changed<LodSelection>, Changed<TreeInstance>)>,
+    >,
+) {
+    let tables = tables.bypass_change_detection();
+    for (instance, visibility, selection) in &trees {
+        if let Some(row) = instance.row {
+            tables.set_visible(row, visibility.get() && !selection.is_impostor);
+        }
+    }
+    if tables.retry_unposed() && !*has_warned {
+        warn!("windwood: this device can pose {} beams at once; trees beyond that stand still", capabilities.max_poses);
+        *has_warned = true;
+    }
+}

@@ -1,0 +1,69 @@
+//! Selects the LOD levels of trees.
+
+use super::{
+    thresholds::{LodSelection, LodThresholds},
+    viewers::LodViewers,
+};
+use crate::render::{
+    instances::components::{HasImpostor, TreeInstance},
+    settings::ActiveLevelOfDetail,
+};
+use bevy::prelude::*;
+
+/// What selection has to know of a tree.
+type Selected = (Entity, &'static TreeInstance, &'static GlobalTransform, Has<HasImpostor>, &'static mut LodSelection);
+
+/// Selects the levels of trees that have just got an instance, or have moved, and those of all when a viewer has moved. In the latter case
+/// no more than so many change in a frame; the rest follow in the next ones.
+pub(crate) fn select_lods(
+    settings: Res<ActiveLevelOfDetail>,
+    mut viewers: ResMut<LodViewers>,
+    transforms: TransformHelper,
+    mut trees: Query<Selected>,
+    new: Query<Entity, Changed<TreeInstance>>,
+    moved: Query<Entity, (With<LodSelection>, Changed<GlobalTransform>)>,
+) {
+    for tree in &new {
+        let Ok((entity, instance, _, has_impostor, mut selection)) = trees.get_mut(tree) else { continue };
+        // A tree that was spawned in this frame has no place in the world yet.
+        let at = transforms.compute_global_transform(entity).unwrap_or_default();
+        *selection = select(&viewers, instance, &at, has_impostor, None);
+    }
+    for tree in &moved {
+        let Ok((_, instance, at, has_impostor, mut selection)) = trees.get_mut(tree) else { continue };
+        let next = select(&viewers, instance, at, has_impostor, Some(*selection));
+        selection.set_if_neq(next);
+    }
+    if !std::mem::take(&mut viewers.bypass_change_detection().is_due) {
+        return;
+    }
+    let mut left = settings.0.changes_per_frame;
+    for (_, instance, at, has_impostor, mut selection) in &mut trees {
+        let next = select(&viewers, instance, at, has_impostor, Some(*selection));
+        if next == *selection {
+            continue;
+        }
+        if left == 0 {
+            viewers.bypass_change_detection().is_due = true;
+            return;
+        }
+        left -= 1;
+        *selection = next;
+    }
+}
+
+fn select(
+    viewers: &LodViewers,
+    instance: &TreeInstance,
+    at: &GlobalTransform,
+    has_impostor: bool,
+    before: Option<LodSelection>,
+) -> LodSelection {
+    let (distance, thresholds): (_, &LodThresholds) = (viewers.distance(at.translation()), &viewers.thresholds);
+    let (height_m, count) = (instance.height_m * at.affine().matrix3.y_axis.length(), instance.lod_count);
+    match (instance.row, has_impostor) {
+        (None, _) => thresholds.select_without_fade(distance.scaled_m, height_m, count, before),
+        (Some(_), true) => thresholds.select_before_impostor(distance, height_m, count, before),
+        (Some(_), false) => thresholds.select(distance.scaled_m, height_m, count, before),
+    }
+}

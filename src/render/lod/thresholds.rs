@@ -1,0 +1,204 @@
+//! The distances at which trees change their LOD level.
+//!
+//! A tree's level follows from its size on screen. Where a level fades into the next, the meshes of both are drawn, and the shaders
+//! dither between them by the distance to the camera (`render/shaders/cross_fade.wesl`), in the main pass, the prepass and the shadows
+//! alike. Meshes are swapped only where the level that goes is all hidden and the one that comes has not begun, so no swap is seen.
+//! Only a viewer who jumps sees levels change at once.
+
+use super::impostor_range::ImpostorRange;
+use crate::{
+    lod::Lens,
+    render::settings::{LevelOfDetail, LevelStyle},
+};
+use bevy::prelude::*;
+
+/// The most LOD levels that one tree has.
+pub(crate) const MAX_LODS: usize = 3;
+/// Farther than anything, m.
+const NEVER_M: f32 = 1e30;
+/// The meshes of both levels are there for so much longer than the fade itself, m, since viewers move on before the swap: a share of
+/// the distance, and no less than a fast viewer makes between two selections.
+const SLACK_M: [f32; 2] = [1.0, 3.0];
+const SLACK_SHARE: f32 = 0.05;
+/// Models are grown for ages in steps, impostors for any age: the heights of a tree and its impostor differ by less than this factor.
+pub(crate) const HEIGHT_TOLERANCE: f32 = 1.17;
+
+/// Which LOD levels of a tree are drawn.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[component(clone_behavior = Ignore)]
+pub(crate) struct LodSelection {
+    pub lod: u8,
+    /// Whether it fades into the level after it, which is drawn as well.
+    pub is_fading: bool,
+    /// Whether the impostor alone stands for the tree, and nothing of it is drawn or posed.
+    pub is_impostor: bool,
+}
+
+/// How far a tree is from the nearest viewer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LodDistance {
+    /// In the world, m.
+    pub m: f32,
+    /// As the lens of the thresholds would see it as large, m.
+    pub scaled_m: f32,
+}
+
+/// Where the LOD levels of trees end, for one lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LodThresholds {
+    /// Of each level, per metre of the tree's height; the last has no end, unless an impostor follows it.
+    pub ends: [f32; MAX_LODS],
+    pub fade: f32,
+    margin: f32,
+    /// Where impostors begin, m.
+    pub impostors_from_m: f32,
+}
+
+impl LodThresholds {
+    pub fn new(settings: &LevelOfDetail, lens: Lens, impostors: ImpostorRange) -> Self {
+        let [high, medium] = settings.distances.distances_m(1.0, lens);
+        let ends = match settings.style {
+            // The second thinning begins half way, as the eye sees distances.
+            LevelStyle::Thinned => [high, (high * medium).sqrt(), medium],
+            LevelStyle::Paper => [high, medium, NEVER_M],
+            LevelStyle::Full => [NEVER_M; MAX_LODS],
+        };
+        let impostors_from_m = impostors.from_m.unwrap_or(NEVER_M);
+        Self { ends, fade: settings.fade, margin: settings.distances.margin, impostors_from_m }
+    }
+
+    /// The selection for a tree of a height, m, with `count` levels, after the selection before.
+    pub fn select(&self, distance_m: f32, height_m: f32, count: u8, before: Option<LodSelection>) -> LodSelection {
+        let last = count.saturating_sub(1).min(MAX_LODS as u8 - 1);
+        for lod in 0..last {
+            let end_m = self.ends[usize::from(lod)] * height_m;
+            let fading = LodSelection { lod, is_fading: true, is_impostor: false };
+            let margin = if before == Some(fading) { self.margin } else { 0.0 };
+            if distance_m < (end_m * (1.0 - self.fade) - slack_m(end_m)) * (1.0 - margin) {
+                return LodSelection { lod, ..default() };
+            }
+            if distance_m < (end_m * (1.0 + self.fade) + slack_m(end_m)) * (1.0 + margin) {
+                return fading;
+            }
+        }
+        LodSelection { lod: last, ..default() }
+    }
+
+    /// The same for a tree with an impostor.
+    pub fn select_before_impostor(
+        &self,
+        distance: LodDistance,
+        height_m: f32,
+        count: u8,
+        before: Option<LodSelection>,
+    ) -> LodSelection {
+        let selection = self.select(distance.scaled_m, height_m, count, before);
+        let margin = if before.is_some_and(|before| before.is_impostor) { -self.margin } else { 0.0 };
+        let is_beyond =
+            |distance_m: f32, end_m: f32| distance_m > (end_m * (1.0 + self.fade) + slack_m(end_m)) * (1.0 + margin);
+        let is_impostor = is_beyond(distance.m, self.impostors_from_m)
+            || is_beyond(distance.scaled_m, self.ends[MAX_LODS - 1] * height_m * HEIGHT_TOLERANCE);
+        LodSelection { is_impostor, ..selection }
+    }
+
+    /// The selection for a tree whose material cannot fade: one level at a time, and no impostor.
+    pub fn select_without_fade(
+        &self,
+        distance_m: f32,
+        height_m: f32,
+        count: u8,
+        before: Option<LodSelection>,
+    ) -> LodSelection {
+        let LodSelection { lod, is_fading, .. } = self.select(distance_m, height_m, count, before);
+        let lod = before.map_or(lod, |before| before.lod.clamp(lod, lod + u8::from(is_fading)));
+        LodSelection { lod, ..default() }
+    }
+}
+
+fn slack_m(end_m: f32) -> f32 {
+    let [least, most] = SLACK_M;
+    (SLACK_SHARE * end_m).clamp(least, most)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const LENS: Lens = Lens { fov_rad: std::f32::consts::FRAC_PI_4, picture_px: 1080.0 };
+
+    fn thresholds() -> LodThresholds {
+        LodThresholds::new(&LevelOfDetail::default(), LENS, ImpostorRange { from_m: Some(200.0) })
+    }
+
+    #[test]
+    fn large_trees_keep_their_level_farther_than_small_ones() {
+        let lod = |height_m| thresholds().select(60.0, height_m, 3, None).lod;
+        assert_eq!((lod(30.0), lod(4.0)), (0, 2));
+    }
+
+    proptest! {
+        /// On any way, every level that a shader shows in part is drawn, and none that it does not show at all.
+        #[test]
+        fn levels_that_fade_are_drawn(height_m in 1.0..40.0_f32, way in prop::collection::vec(0.0..900.0_f32, 1..40)) {
+            let thresholds = thresholds();
+            let mut selection = None;
+            for distance_m in way {
+                let next = thresholds.select(distance_m, height_m, 3, selection);
+                selection = Some(next);
+                for end in 0..2_u8 {
+                    let end_m = thresholds.ends[usize::from(end)] * height_m;
+                    let fades = (distance_m / end_m - 1.0).abs() < thresholds.fade;
+                    let others = |other: u8| {
+                        let other_m = thresholds.ends[usize::from(other)] * height_m;
+                        other != end && (distance_m / other_m - 1.0).abs() < thresholds.fade + 0.3
+                    };
+                    if fades && !(0..2).any(others) {
+                        prop_assert_eq!(next, LodSelection { lod: end, is_fading: true, is_impostor: false });
+                    }
+                }
+            }
+        }
+
+        #[test]
+        fn small_movements_at_a_border_change_the_selection_once_at_most(
+            start_m in 5.0..600.0_f32, height_m in 5.0..40.0_f32, steps in prop::collection::vec(-0.5..0.5_f32, 30),
+        ) {
+            let thresholds = thresholds();
+            let mut selection = thresholds.select(start_m, height_m, 3, None);
+            let mut changes = 0;
+            for step in steps {
+                let next = thresholds.select(start_m + step, height_m, 3, Some(selection));
+                changes += usize::from(next != selection);
+                selection = next;
+            }
+            prop_assert!(changes <= 1, "{} changes", changes);
+        }
+    }
+
+    #[test]
+    fn trees_are_dropped_only_where_their_impostor_is_complete() {
+        let thresholds = thresholds();
+        let is_impostor =
+            |m, before| thresholds.select_before_impostor(LodDistance { m, scaled_m: m }, 20.0, 3, before).is_impostor;
+        // Impostors begin at 200 m, and are complete there.
+        assert!(!is_impostor(200.0 * (1.0 + thresholds.fade), None) && is_impostor(230.0, None));
+        let before = LodSelection { lod: 2, is_fading: false, is_impostor: true };
+        assert!(is_impostor(220.0, Some(before)) && !is_impostor(200.0, Some(before)));
+        assert!(!thresholds.select(1e6, 20.0, 3, None).is_impostor);
+    }
+
+    #[test]
+    fn a_lens_moves_levels_but_not_the_border_of_the_entities() {
+        let select = |m, scaled_m| thresholds().select_before_impostor(LodDistance { m, scaled_m }, 20.0, 3, None);
+        let telephoto = select(150.0, 15.0);
+        assert_eq!(telephoto, LodSelection::default());
+        assert!(select(260.0, 26.0).is_impostor, "no tree stands there as an entity");
+    }
+
+    #[test]
+    fn one_level_is_selected_at_any_distance() {
+        assert_eq!(thresholds().select(1e6, 20.0, 1, None), LodSelection::default());
+        assert_eq!(thresholds().select(f32::NAN, 20.0, 3, None).lod, 2);
+    }
+}

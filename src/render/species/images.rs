@@ -1,0 +1,43 @@
+//! The textures of a species as Bevy images: megabytes, laid out in the background.
+
+use crate::{
+    render::texture_image::{ALL_MIPS, image},
+    texture::TextureData,
+    tree::{bark::BarkTextures, textures::SpeciesTextures},
+};
+use bevy::{image::ImageAddressMode, prelude::*};
+
+/// Coarsest mip of masked foliage that is used: beyond it a spray is a few texels, between which no alpha passes the mask,
+/// and distant crowns would go bare.
+const FOLIAGE_LOD_LIMIT: f32 = 3.0;
+
+/// All textures of a species.
+pub(crate) struct SpeciesImages {
+    pub bark: Image,
+    pub bark_normal: Image,
+    pub bark_surface: Image,
+    pub foliage: Image,
+    pub foliage_normal: Option<Image>,
+    /// Mean colour of the foliage, sRGB 0 to 1.
+    pub foliage_colour: [f32; 3],
+}
+
+impl From<&SpeciesTextures> for SpeciesImages {
+    fn from(textures: &SpeciesTextures) -> Self {
+        let BarkTextures { base_colour, normal, surface } = &textures.bark;
+        let masked = |texture| image(texture, ImageAddressMode::ClampToEdge, FOLIAGE_LOD_LIMIT);
+        Self {
+            bark: repeating_image(base_colour),
+            bark_normal: repeating_image(normal),
+            bark_surface: repeating_image(surface),
+            foliage: masked(&textures.foliage),
+            foliage_normal: textures.foliage_normal.as_ref().map(masked),
+            foliage_colour: textures.foliage_colour(),
+        }
+    }
+}
+
+/// A texture that repeats.
+pub(crate) fn repeating_image(texture: &TextureData) -> Image {
+    image(texture, ImageAddressMode::Repeat, ALL_MIPS)
+}

@@ -1,0 +1,146 @@
+//! Prepares species in the background, when they have been baked.
+
+use super::{
+    library::{
+        PreparedLod, PreparedMesh, PreparedSpecies, PreparedVariant, SpeciesLibrary, SpeciesPrepared, VariantRemoved,
+    },
+    lod_meshes::{LodMeshes, MeshPart, SpeciesMeshes, VariantMeshes, species_meshes},
+    materials::{MaterialAssets, SpeciesMaterials},
+};
+use crate::{
+    render::{
+        settings::{ActiveLevelOfDetail, LevelStyle},
+        wind_exposure::WindExposure,
+    },
+    tree::{Species, SpeciesBaked, SpeciesModels, TreeModel},
+};
+use bevy::{
+    ecs::system::SystemParam,
+    prelude::*,
+    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+};
+use std::collections::VecDeque;
+
+/// Species that are being prepared.
+#[derive(Resource, Default)]
+pub(crate) struct PreparationQueue {
+    /// Species and steps of age that wait to be started.
+    waiting: VecDeque<(AssetId<Species>, i32)>,
+    running: Vec<Preparation>,
+    style: LevelStyle,
+}
+
+struct Preparation {
+    species: AssetId<Species>,
+    age_step: i32,
+    generation: u64,
+    task: Task<SpeciesMeshes>,
+}
+
+/// Starts preparing species that were baked, or all of them when the style of the levels has changed, one a frame.
+pub(crate) fn start_preparing_species(
+    mut baked: MessageReader<SpeciesBaked>,
+    species_models: Res<SpeciesModels>,
+    models: Res<Assets<TreeModel>>,
+    settings: Res<ActiveLevelOfDetail>,
+    library: Res<SpeciesLibrary>,
+    mut queue: ResMut<PreparationQueue>,
+) {
+    let PreparationQueue { waiting, running, style } = queue.bypass_change_detection();
+    waiting.extend(baked.read().map(|&SpeciesBaked { species, step }| (species, step)));
+    if *style != settings.0.style {
+        *style = settings.0.style;
+        waiting.clear();
+        waiting.extend(species_models.stages());
+        waiting.make_contiguous().sort_unstable();
+    }
+    let Some((id, age_step)) = waiting.pop_front() else { return };
+    let Some(entry) = species_models.get(id) else { return };
+    let Some(stage) = entry.stages.get(&age_step) else { return };
+    let (species, style, generation) = (entry.species.clone(), *style, stage.generation);
+    let variants: Vec<TreeModel> = stage.models.iter().filter_map(|model| models.get(model).cloned()).collect();
+    running.retain(|other| (other.species, other.age_step) != (id, age_step));
+    let has_images = library.species.get(&id).is_some_and(|prepared| prepared.generation == generation)
+        || running.iter().any(|other| (other.species, other.generation) == (id, generation));
+    let task = AsyncComputeTaskPool::get().spawn(async move { species_meshes(&species, !has_images, variants, style) });
+    running.push(Preparation { species: id, age_step, generation, task });
+}
+
+/// Forgets species whose asset is gone.
+pub(crate) fn remove_prepared_species(
+    mut events: MessageReader<AssetEvent<Species>>,
+    mut queue: ResMut<PreparationQueue>,
+    mut library: ResMut<SpeciesLibrary>,
+    mut removed: MessageWriter<VariantRemoved>,
+) {
+    for event in events.read() {
+        if let AssetEvent::Removed { id } = event {
+            queue.running.retain(|other| other.species != *id);
+            let prepared = library.species.remove(id);
+            removed.write_batch(prepared.into_iter().flat_map(|it| it.variants.into_keys()).map(VariantRemoved));
+        }
+    }
+}
+
+/// Adds meshes and materials as assets.
+#[derive(SystemParam)]
+pub(crate) struct PreparedAssets<'w> {
+    meshes: ResMut<'w, Assets<Mesh>>,
+    models: Res<'w, Assets<TreeModel>>,
+    exposure: Res<'w, WindExposure>,
+    materials: MaterialAssets<'w>,
+}
+
+/// Takes over what has been prepared, one species at one age a frame.
+pub(crate) fn finish_preparing_species(
+    mut queue: ResMut<PreparationQueue>,
+    species_models: Res<SpeciesModels>,
+    mut library: ResMut<SpeciesLibrary>,
+    mut assets: PreparedAssets,
+    mut prepared: MessageWriter<SpeciesPrepared>,
+    mut removed: MessageWriter<VariantRemoved>,
+) {
+    let running = &queue.running;
+    // The first of a species brings the textures for all.
+    let is_first = |number: usize| running[..number].iter().all(|other| other.species != running[number].species);
+    let ready = (0..running.len()).find(|&number| is_first(number) && running[number].task.is_finished());
+    let Some(number) = ready else { return };
+    let Preparation { species, age_step, generation, mut task } = queue.running.remove(number);
+    let Some(meshes) = block_on(poll_once(&mut task)) else { return };
+    let Some(entry) = species_models.get(species) else { return };
+    let Some(stage) = entry.stages.get(&age_step).filter(|stage| stage.generation == generation) else { return };
+    if let Some(images) = meshes.images {
+        let materials = assets.materials.add_species(&entry.species, images);
+        let variants = library.species.remove(&species).map(|old| old.variants).unwrap_or_default();
+        let phenology = entry.species.phenology;
+        library.species.insert(species, PreparedSpecies { generation, phenology, materials, variants });
+    }
+    let Some(in_library) = library.species.get_mut(&species) else { return };
+    let is_replaced = in_library.variants.values().any(|variant| variant.age_step == age_step);
+    in_library.variants.retain(|id, variant| {
+        let stays = variant.age_step != age_step;
+        if !stays && stage.models.iter().all(|model| model.id() != *id) {
+            removed.write(VariantRemoved(*id));
+        }
+        stays
+    });
+    for (handle, VariantMeshes { lods, height_m }) in stage.models.iter().zip(meshes.variants) {
+        let Some(model) = assets.models.get(handle) else { continue };
+        let bounds = assets.exposure.aabb(model, &in_library.phenology);
+        let lods = lods.into_iter().map(|lod| assets.add_lod(lod, &in_library.materials)).collect();
+        in_library.variants.insert(handle.id(), PreparedVariant { age_step, lods, bounds, height_m });
+    }
+    prepared.write(SpeciesPrepared { species, age_step, is_replaced });
+}
+
+impl PreparedAssets<'_> {
+    fn add_lod(&mut self, lod: LodMeshes, species: &SpeciesMaterials) -> PreparedLod {
+        let LodMeshes { wood, leaves, is_wood_nested } = lod;
+        let mut add = |MeshPart { mesh, material }: MeshPart| PreparedMesh {
+            mesh: self.meshes.add(mesh),
+            can_fade: material.can_fade(),
+            materials: self.materials.of_mesh(material, species),
+        };
+        PreparedLod { wood: add(wood), leaves: leaves.map(add), is_wood_nested }
+    }
+}

@@ -1,0 +1,3 @@
+//! Systems and resources of drawn ground.
+
+pub(super) mod stream;

@@ -1,0 +1,265 @@
+//! Builds the ground about the viewers in the background, and shows it.
+
+use crate::{
+    render::texture_image::{ALL_MIPS, image},
+    terrain::{
+        chunk::{ChunkVertices, chunk_vertices},
+        chunk_key::{COARSEST_NEIGHBOUR, ChunkKey},
+        components::{GroundLook, Terrain, TerrainSettings},
+        ground_texture::ground_texture,
+        material::{ATTRIBUTE_MARKS, GroundMaterial, ground_material},
+        pyramid::{Eye, Pyramid},
+    },
+    viewpoint::Viewpoints,
+};
+use bevy::{
+    asset::RenderAssetUsages,
+    camera::{primitives::Aabb, visibility::NoAutoAabb},
+    image::ImageAddressMode,
+    mesh::{Indices, MeshTag, PrimitiveTopology},
+    platform::collections::HashMap,
+    prelude::*,
+    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+};
+
+/// The chunks of a [`Terrain`].
+#[derive(Component)]
+pub struct TerrainChunks {
+    pyramid: Pyramid,
+    /// Settings in force: the last that were valid.
+    settings: TerrainSettings,
+    material: Handle<GroundMaterial>,
+    building: Vec<(ChunkKey, Task<Built>)>,
+    chunks: HashMap<ChunkKey, Entity>,
+    /// Chunks that were spawned in the last frame: only now can they be shown, and coarser ones be hidden.
+    arrived: Vec<ChunkKey>,
+    eyes: Vec<Eye>,
+    selected_from: Vec<Eye>,
+    is_complete: bool,
+}
+
+struct Built {
+    mesh: Mesh,
+    bounds: Aabb,
+}
+
+impl TerrainChunks {
+    /// Whether all ground that is wanted from where the viewers are is drawn.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.is_complete
+    }
+
+    /// Number of chunks that are drawn.
+    #[must_use]
+    pub fn drawn(&self) -> usize {
+        self.pyramid.drawn().len()
+    }
+}
+
+/// One chunk of drawn ground, a child of its [`Terrain`].
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TerrainChunk(pub ChunkKey);
+
+/// The texture of all ground.
+#[derive(Resource)]
+pub(in crate::terrain) struct GroundTexture(Handle<Image>);
+
+impl FromWorld for GroundTexture {
+    fn from_world(world: &mut World) -> Self {
+        let image = image(&ground_texture(), ImageAddressMode::Repeat, ALL_MIPS);
+        Self(world.resource_mut::<Assets<Image>>().add(image))
+    }
+}
+
+/// What all chunks depend on.
+type NewGround = Or<(Changed<Terrain>, Changed<TerrainSettings>)>;
+
+/// Starts to build terrains that are new or were changed.
+pub(in crate::terrain) fn begin_terrains(
+    mut commands: Commands,
+    texture: Res<GroundTexture>,
+    mut materials: ResMut<Assets<GroundMaterial>>,
+    changed: Query<(Entity, &TerrainSettings, &GroundLook, Option<&TerrainChunks>), NewGround>,
+) {
+    for (entity, wanted, look, before) in &changed {
+        let settings = match wanted.validate() {
+            Ok(()) => *wanted,
+            Err(error) => {
+                let last = before.map_or_else(TerrainSettings::default, |before| before.settings);
+                warn!("terrain settings: {error}; {last:?} are used");
+                last
+            }
+        };
+        for chunk in before.into_iter().flat_map(|before| before.chunks.values()) {
+            commands.entity(*chunk).despawn();
+        }
+        let look = if look.validate().is_ok() { *look } else { GroundLook::default() };
+        let material = before.map(|before| before.material.clone());
+        commands.entity(entity).insert(TerrainChunks {
+            pyramid: Pyramid::new(settings.shape()),
+            settings,
+            material: material.unwrap_or_else(|| materials.add(ground_material(&look, texture.0.clone()))),
+            building: Vec::new(),
+            chunks: HashMap::default(),
+            arrived: Vec::new(),
+            eyes: Vec::new(),
+            selected_from: Vec::new(),
+            is_complete: false,
+        });
+    }
+}
+
+/// Recolours ground whose look was changed.
+pub(in crate::terrain) fn recolour_ground(
+    texture: Res<GroundTexture>,
+    mut materials: ResMut<Assets<GroundMaterial>>,
+    changed: Query<(&GroundLook, &TerrainChunks), Changed<GroundLook>>,
+) {
+    for (look, chunks) in &changed {
+        match look.validate() {
+            Ok(()) => {
+                if let Some(mut material) = materials.get_mut(&chunks.material) {
+                    *material = ground_material(look, texture.0.clone());
+                }
+            }
+            Err(error) => warn!("look of the ground: {error}; the last good one stays"),
+        }
+    }
+}
+
+/// Selects the chunks that are wanted, spawns what was built, and starts to build what is missing.
+pub(in crate::terrain) fn stream_ground(
+    mut commands: Commands,
+    viewpoints: Viewpoints,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut terrains: Query<(Entity, &Terrain, &mut TerrainChunks)>,
+    mut shown: Query<(&mut Visibility, &mut MeshTag), With<TerrainChunk>>,
+) {
+    for (entity, terrain, mut chunks) in &mut terrains {
+        let chunks = &mut *chunks;
+        let mut changed = chunks.select(terrain, &viewpoints);
+        let dropped: Vec<Entity> = chunks.pyramid.dropped().filter_map(|key| chunks.chunks.remove(&key)).collect();
+        dropped.into_iter().for_each(|chunk| commands.entity(chunk).despawn());
+        changed |= !chunks.arrived.is_empty();
+        for key in chunks.arrived.drain(..) {
+            chunks.pyramid.receive(key);
+        }
+        chunks.spawn_built(entity, &mut commands, &mut meshes);
+        chunks.start_builds(terrain);
+        chunks.is_complete = chunks.building.is_empty() && chunks.arrived.is_empty() && chunks.pyramid.is_complete();
+        if changed {
+            chunks.pyramid.select_drawn();
+            chunks.show(&mut shown);
+        }
+    }
+}
+
+impl TerrainChunks {
+    /// Selects chunks again when a viewer has moved by half a cell; whether anything may have changed.
+    fn select(&mut self, terrain: &Terrain, viewpoints: &Viewpoints) -> bool {
+        let eye = |at: Vec3| {
+            let place = at.as_dvec3().xz();
+            Eye { place, above_ground_m: (f64::from(at.y) - terrain.ground.height_m(place)).max(0.0) }
+        };
+        self.eyes.clear();
+        self.eyes.extend(viewpoints.iter().map(eye));
+        let half_a_cell = 0.5 * f64::from(self.settings.finest_cell_m);
+        let rests = |(now, then): (&Eye, &Eye)| {
+            now.place.distance(then.place).max((now.above_ground_m - then.above_ground_m).abs()) < half_a_cell
+        };
+        // Without viewers, what is there stays.
+        let is_unseen = self.eyes.is_empty();
+        if is_unseen
+            || self.eyes.len() == self.selected_from.len() && self.eyes.iter().zip(&self.selected_from).all(rests)
+        {
+            return false;
+        }
+        self.selected_from.clone_from(&self.eyes);
+        self.pyramid.select(&self.eyes);
+        true
+    }
+
+    /// Spawns chunks that are built, as many as a frame may.
+    fn spawn_built(&mut self, terrain: Entity, commands: &mut Commands, meshes: &mut Assets<Mesh>) {
+        let mut room = self.settings.chunks_per_frame;
+        let Self { building, pyramid, chunks, arrived, material, settings, .. } = self;
+        building.retain_mut(|(key, task)| {
+            let built = if room > 0 { block_on(poll_once(task)) } else { None };
+            let Some(built) = built else { return true };
+            room -= 1;
+            if pyramid.awaits(*key) {
+                let corner = key.corner_m(f64::from(settings.finest_cell_m)).as_vec2();
+                let chunk = commands.spawn((
+                    TerrainChunk(*key),
+                    ChildOf(terrain),
+                    Transform::from_xyz(corner.x, 0.0, corner.y),
+                    Visibility::Hidden,
+                    Mesh3d(meshes.add(built.mesh)),
+                    MeshMaterial3d(material.clone()),
+                    MeshTag::new(0),
+                    built.bounds,
+                    NoAutoAabb,
+                ));
+                chunks.insert(*key, chunk.id());
+                arrived.push(*key);
+            }
+            false
+        });
+    }
+
+    /// Starts to build what is missing, as much as may be built at once.
+    fn start_builds(&mut self, terrain: &Terrain) {
+        while self.building.len() < self.settings.builds_at_once as usize {
+            let Some(key) = self.pyramid.next_to_build() else { break };
+            let (terrain, cell_m) = (terrain.clone(), f64::from(self.settings.finest_cell_m));
+            let task = AsyncComputeTaskPool::get().spawn(async move {
+                let vertices = chunk_vertices(&terrain.ground, terrain.cover.as_deref(), key, cell_m);
+                let side_m = key.side_m(cell_m) as f32;
+                let bounds = Aabb::from_min_max(
+                    Vec3::new(0.0, vertices.lowest_m, 0.0),
+                    Vec3::new(side_m, vertices.highest_m, side_m),
+                );
+                Built { mesh: chunk_mesh(vertices), bounds }
+            });
+            self.building.push((key, task));
+        }
+    }
+
+    /// Shows the chunks that are drawn, with their seams, and hides all others.
+    fn show(&self, shown: &mut Query<(&mut Visibility, &mut MeshTag), With<TerrainChunk>>) {
+        for (key, entity) in &self.chunks {
+            // One that was spawned in this frame comes in the next.
+            let Ok((mut visibility, mut tag)) = shown.get_mut(*entity) else { continue };
+            let seams = self.pyramid.seams(*key);
+            visibility.set_if_neq(if seams.is_some() { Visibility::Inherited } else { Visibility::Hidden });
+            if let Some(seams) = seams {
+                tag.set_if_neq(MeshTag::new(seams.0));
+            }
+        }
+    }
+}
+
+/// Removes the chunks of a terrain, when its [`Terrain`] is removed.
+pub(crate) fn remove_terrain(
+    removed: On<Remove<Terrain>>,
+    mut commands: Commands,
+    children: Query<&Children>,
+    chunks: Query<(), With<TerrainChunk>>,
+) {
+    for child in children.get(removed.entity).into_iter().flatten().filter(|child| chunks.contains(**child)) {
+        commands.entity(*child).try_despawn();
+    }
+    if let Ok(mut terrain) = commands.get_entity(removed.entity) {
+        terrain.try_remove::<TerrainChunks>();
+    }
+}
+
+fn chunk_mesh(vertices: ChunkVertices) -> Mesh {
+    const { assert!(COARSEST_NEIGHBOUR < 8, "three bits of a gap's code") };
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, vertices.positions)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, vertices.normals)
+        .with_inserted_attribute(ATTRIBUTE_MARKS, vertices.marks)
+        .with_inserted_indices(Indices::U32(vertices.indices))
+}

@@ -1,0 +1,223 @@
+//! The load bases against direct integration of each beam's own load by its own oscillator.
+
+use crate::report::Report;
+use bevy::math::{Vec3, Vec4};
+use bevy_windwood::dynamics::{ExactStep, FrequencyClasses, LoadBasis, LoadBasisKind, OscillatorState, ResponseTable};
+use rand::rngs::Xoshiro256PlusPlus;
+use rand::{RngExt, SeedableRng};
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
+use std::f64::consts::TAU;
+
+const SEED: u64 = 25;
+const MEAN_SPEED_M_S: f64 = 8.0;
+const HEIGHT_M: f64 = 10.0;
+const TURBULENCE_INTENSITY: f64 = 0.2;
+const SAMPLES: usize = 4096;
+const TIME_STEP_S: f64 = 1.0 / 16.0;
+const DAMPING_RATIO: f32 = 0.1;
+const DIRECTIONS: usize = 250;
+/// Steps of the direct integration per step of the table.
+const OVERSAMPLING: usize = 8;
+/// Frequency classes of 0.17, 0.54, 0.99 and 2.2 Hz.
+const CLASSES: [usize; 4] = [6, 12, 15, 19];
+
+pub fn run() -> Report {
+    let fine = test_wind(SEED, SAMPLES, OVERSAMPLING);
+    let experiment = Experiment::new(&fine);
+    let mut report = Report::default();
+
+    let printed = experiment.errors(LoadBasisKind::OrthogonalBeams { halved: false }, OVERSAMPLING);
+    report.record("orthogonal_as_printed_median", quantile(printed, 0.5), "eq. 25 as printed");
+    let halved = experiment.errors(LoadBasisKind::OrthogonalBeams { halved: true }, OVERSAMPLING);
+    report.record("orthogonal_halved_median", quantile(halved, 0.5), "eq. 25 halved");
+    let principal = experiment.errors(LoadBasisKind::Principal, OVERSAMPLING);
+    report.at_most("principal_median", quantile(principal.clone(), 0.5), 0.04, "rank 4, at the samples");
+    report.at_most("principal_p95", quantile(principal, 0.95), 0.25, "rank 4, at the samples");
+
+    let between = experiment.errors(LoadBasisKind::Principal, 1);
+    report.record("principal_between_samples_median", quantile(between, 0.5), "with interpolation in time");
+    for (key, class) in INTERPOLATION_KEYS {
+        report.record(key, experiment.interpolation_error(class), "Catmull-Rom in time alone, steps of 1/16 s");
+    }
+    let rounding = experiment.rounding_errors();
+    report.record("class_rounding_median", quantile(rounding.clone(), 0.5), "frequency to the nearest class alone");
+    report.record("class_rounding_p95", quantile(rounding, 0.95), "frequency to the nearest class alone");
+    report.record("quasi_static_5_hz", experiment.quasi_static_error(5.0), "resonance left out above the band");
+    report
+}
+
+const INTERPOLATION_KEYS: [(&str, usize); 3] =
+    [("interpolation_1_0_hz", 15), ("interpolation_2_2_hz", 19), ("interpolation_3_3_hz", 21)];
+
+/// Beams and their motion by direct integration.
+struct Experiment<'a> {
+    fine: &'a [Vec3],
+    coarse: Vec<Vec3>,
+    directions: Vec<Vec3>,
+    classes: FrequencyClasses,
+    /// By class, then by direction.
+    direct: Vec<Vec<Vec<Vec3>>>,
+}
+
+impl<'a> Experiment<'a> {
+    fn new(fine: &'a [Vec3]) -> Self {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(SEED);
+        let directions: Vec<Vec3> = (0..DIRECTIONS).map(|_| random_direction(&mut random)).collect();
+        let classes = FrequencyClasses::default();
+        let direct = CLASSES.map(|class| {
+            let frequency_hz = f64::from(classes.frequency_hz(class));
+            directions.iter().map(|&direction| integrate(fine, direction, frequency_hz)).collect()
+        });
+        let coarse = fine.iter().step_by(OVERSAMPLING).copied().collect();
+        Self { fine, coarse, directions, classes, direct: direct.into() }
+    }
+
+    fn table(&self, kind: LoadBasisKind) -> (LoadBasis, ResponseTable) {
+        let basis = LoadBasis::new(kind, &self.coarse, drag);
+        let columns = [self.coarse.clone()];
+        let table = ResponseTable::new(&columns, TIME_STEP_S as f32, &basis, self.classes, DAMPING_RATIO);
+        (basis, table)
+    }
+
+    /// Relative rms error of the moving part for every class and direction, at every `stride`-th fine step.
+    fn errors(&self, kind: LoadBasisKind, stride: usize) -> Vec<f64> {
+        let (basis, table) = self.table(kind);
+        let mut errors = Vec::new();
+        for (&class, direct) in CLASSES.iter().zip(&self.direct) {
+            let responses: Vec<Vec4> = (0..self.fine.len())
+                .step_by(stride)
+                .map(|step| table.response(class, 0, step as f64 * TIME_STEP_S / OVERSAMPLING as f64))
+                .collect();
+            errors.extend(self.directions.iter().zip(direct).map(|(&direction, direct)| {
+                let coefficients = basis.coefficients(direction);
+                let looked_up: Vec<Vec3> = responses.iter().map(|&response| coefficients.load(response)).collect();
+                let direct: Vec<Vec3> = direct.iter().step_by(stride).copied().collect();
+                relative_error(&looked_up, &direct)
+            }));
+        }
+        errors
+    }
+
+    /// Error of the responses of a class between the samples, where they are interpolated.
+    fn interpolation_error(&self, class: usize) -> f64 {
+        let (_, table) = self.table(LoadBasisKind::Principal);
+        let columns = [self.fine.to_vec()];
+        let basis = LoadBasis::new(LoadBasisKind::Principal, &self.coarse, drag);
+        let step_s = TIME_STEP_S / OVERSAMPLING as f64;
+        let fine_table = ResponseTable::new(&columns, step_s as f32, &basis, self.classes, DAMPING_RATIO);
+        let series = |table: &ResponseTable| -> Vec<Vec3> {
+            (0..self.fine.len()).map(|step| table.response(class, 0, step as f64 * step_s).truncate()).collect()
+        };
+        relative_error(&series(&table), &series(&fine_table))
+    }
+
+    /// Errors of beams of any frequency if that of the nearest class is integrated instead.
+    fn rounding_errors(&self) -> Vec<f64> {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(SEED + 1);
+        let error = |&direction: &Vec3| {
+            let frequency_hz = 0.1 * 30f32.powf(random.random::<f32>());
+            let class = self.classes.nearest(self.classes.coordinate(frequency_hz));
+            let rounded = integrate(self.fine, direction, f64::from(self.classes.frequency_hz(class)));
+            relative_error(&rounded, &integrate(self.fine, direction, f64::from(frequency_hz)))
+        };
+        self.directions.iter().map(error).collect()
+    }
+
+    /// Error of a fast beam that follows its load without inertia, median over directions.
+    fn quasi_static_error(&self, frequency_hz: f64) -> f64 {
+        let error = |&direction: &Vec3| {
+            let load: Vec<Vec3> = self.fine.iter().map(|&velocity| drag(velocity, direction)).collect();
+            relative_error(&load, &integrate(self.fine, direction, frequency_hz))
+        };
+        quantile(self.directions.iter().map(error).collect(), 0.5)
+    }
+}
+
+/// Quadratic drag, `|u_n| u_n`.
+fn drag(velocity: Vec3, direction: Vec3) -> Vec3 {
+    let normal = velocity - velocity.dot(direction) * direction;
+    normal.length() * normal
+}
+
+/// The steady motion of one beam over a period: its own load on its own oscillator, stepped through two periods. Scaled by the
+/// square of the natural frequency, as the table is.
+fn integrate(fine: &[Vec3], direction: Vec3, frequency_hz: f64) -> Vec<Vec3> {
+    let omega = TAU * frequency_hz;
+    let step_s = TIME_STEP_S / OVERSAMPLING as f64;
+    let step = ExactStep::new(omega, f64::from(DAMPING_RATIO), step_s).expect("a frequency above zero");
+    let stiffness = (omega * omega) as f32;
+    let load: Vec<Vec3> = fine.iter().map(|&velocity| stiffness * drag(velocity, direction)).collect();
+    let mut state = OscillatorState::default();
+    let mut motion = Vec::with_capacity(2 * load.len());
+    for index in 0..2 * load.len() {
+        motion.push(state.displacement);
+        state = step.advance(state, load[index % load.len()], load[(index + 1) % load.len()]);
+    }
+    motion.split_off(load.len())
+}
+
+/// Rms of the difference of the moving parts over the rms of the moving part of the reference.
+fn relative_error(values: &[Vec3], reference: &[Vec3]) -> f64 {
+    let mean = |series: &[Vec3]| series.iter().map(|v| v.as_dvec3()).sum::<bevy::math::DVec3>() / series.len() as f64;
+    let (mean_value, mean_reference) = (mean(values), mean(reference));
+    let (mut error, mut size) = (0.0, 0.0);
+    for (value, reference) in values.iter().zip(reference) {
+        let moving = reference.as_dvec3() - mean_reference;
+        error += (value.as_dvec3() - mean_value - moving).length_squared();
+        size += moving.length_squared();
+    }
+    (error / size).sqrt()
+}
+
+fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[((values.len() - 1) as f64 * share).round() as usize]
+}
+
+fn random_direction(random: &mut Xoshiro256PlusPlus) -> Vec3 {
+    let height = random.random_range(-1.0..1.0f32);
+    let azimuth = random.random_range(0.0..std::f32::consts::TAU);
+    let radius = (1.0 - height * height).sqrt();
+    Vec3::new(radius * azimuth.cos(), height, radius * azimuth.sin())
+}
+
+/// A turbulent wind at one point, in wind coordinates: the spectra of eq. 9, corrected, with random phases. It is written again
+/// here so that the check does not depend on the code it checks. A period of `samples` steps of 1/16 s, at `oversampling`
+/// times as many.
+pub fn test_wind(seed: u64, samples: usize, oversampling: usize) -> Vec<Vec3> {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let [along, up, across] = [0, 1, 2].map(|component| {
+        let count = samples * oversampling;
+        let mut spectrum = vec![Complex::<f64>::default(); count];
+        let frequency_step_hz = 1.0 / (samples as f64 * TIME_STEP_S);
+        for (bin, value) in spectrum.iter_mut().enumerate().take(samples / 2).skip(1) {
+            let amplitude = (2.0 * spectra(bin as f64 * frequency_step_hz)[component] * frequency_step_hz).sqrt();
+            *value = Complex::from_polar(amplitude, random.random_range(0.0..TAU));
+        }
+        FftPlanner::new().plan_fft_inverse(count).process(&mut spectrum);
+        spectrum.into_iter().map(|value| value.re).collect::<Vec<f64>>()
+    });
+    let rms = (along.iter().map(|u| u * u).sum::<f64>() / along.len() as f64).sqrt();
+    let scale = TURBULENCE_INTENSITY * MEAN_SPEED_M_S / rms;
+    let velocity = |index: usize| {
+        Vec3::new(
+            (MEAN_SPEED_M_S + scale * along[index]) as f32,
+            (scale * up[index]) as f32,
+            (scale * across[index]) as f32,
+        )
+    };
+    (0..along.len()).map(velocity).collect()
+}
+
+/// One-sided spectra of the components along, up and across, in u*^2 / Hz.
+fn spectra(frequency_hz: f64) -> [f64; 3] {
+    let reduced = frequency_hz * HEIGHT_M / MEAN_SPEED_M_S;
+    let unit = reduced / frequency_hz;
+    let power = |base: f64| base.powf(5.0 / 3.0);
+    [
+        200.0 * unit / power(1.0 + 50.0 * reduced),
+        3.36 * unit / (1.0 + 10.0 * power(reduced)),
+        15.0 * unit / power(1.0 + 9.5 * reduced),
+    ]
+}

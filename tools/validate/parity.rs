@@ -1,0 +1,189 @@
+//! Vertices posed on the GPU against the same on the CPU.
+//!
+//! A whole oak in a storm stands rotated, scaled and far from the origin. The render plugin poses it on the GPU. A compute
+//! shader then moves every vertex with the shader module that draws it, and the positions are read back. The CPU poses the
+//! same tree with `TreePoser` from the same tables.
+
+use crate::{
+    report::Report,
+    support::{
+        self,
+        probe::{ProbePass, ProbeShader},
+    },
+};
+use bevy::{
+    core_pipeline::schedule::camera_driver,
+    prelude::*,
+    render::{
+        RenderApp,
+        extract_resource::{ExtractResource, ExtractResourcePlugin},
+        render_asset::RenderAssets,
+        render_resource::{
+            BindGroupEntries, BindGroupLayoutEntries, ShaderStages,
+            binding_types::{storage_buffer_read_only_sized, storage_buffer_sized},
+        },
+        renderer::RenderGraph,
+        storage::{GpuShaderBuffer, ShaderBuffer},
+    },
+    shader::Shader,
+};
+use bevy_windwood::{prelude::*, render::SwayBuffers, tree::TreeModel};
+use std::time::Duration;
+
+/// Place, rotation and scale of the tree: any will do.
+const TREE_TRANSFORM: Transform = Transform {
+    translation: Vec3::new(413.0, 21.0, -178.0),
+    rotation: Quat::from_xyzw(0.0, 0.479_425_55, 0.0, 0.877_582_55),
+    scale: Vec3::splat(0.83),
+};
+const STORM_M_S: f32 = 28.0;
+const TIMES_S: [f64; 3] = [3.7, 61.3, 1000.1];
+
+const CARRY_SHADER: &str = "
+import bevy_windwood::render::shaders::{beam::carry, instances::{BeamPose, BeamRow, Frame, TreeRow}};
+@group(0) @binding(0) var<storage, read> poses: array<BeamPose>;
+@group(0) @binding(1) var<storage, read> beams: array<BeamRow>;
+@group(0) @binding(2) var<storage, read> trees: array<TreeRow>;
+@group(0) @binding(3) var<storage, read> frame: Frame;
+@group(0) @binding(4) var<storage, read> points: array<vec4<f32>>;
+@group(0) @binding(5) var<storage, read_write> carried: array<vec4<f32>>;
+// A vertex is two rows of `points`: place at rest and beam; place on the beam.
+@compute @workgroup_size(64)
+fn carry_points(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&carried) {
+        return;
+    }
+    let point = points[2u * id.x];
+    let beam = u32(point.w + 0.5);
+    let pose = poses[frame.poses_now + trees[0].first_pose + beam];
+    let motion = carry(beams[trees[0].first_beam + beam], pose, points[2u * id.x + 1u].x, point.xyz);
+    carried[id.x] = vec4(motion.position, 1.0);
+}
+";
+
+/// Poses a tree on both and compares every vertex.
+pub fn run() -> Report {
+    let mut report = Report::default();
+    match worst_differences() {
+        Ok((worst, largest)) => {
+            report.at_most("cpu_gpu_worst", worst, 1e-3, "largest distance between the two, in tree heights");
+            report.record("largest_deflection", largest, "largest way that the storm moves a vertex, in tree heights");
+        }
+        Err(error) => {
+            eprintln!("parity: {error}");
+            report.at_most("cpu_gpu_worst", f64::NAN, 1e-3, "could not be measured");
+        }
+    }
+    report
+}
+
+#[derive(Resource, ExtractResource, Clone)]
+#[extract_app(RenderApp)]
+struct Probe {
+    points: Handle<ShaderBuffer>,
+    carried: Handle<ShaderBuffer>,
+    shader: Handle<Shader>,
+    tables: SwayBuffers,
+    vertices: u32,
+}
+
+fn worst_differences() -> Result<(f64, f64), String> {
+    let mut app = headless_app();
+    let tree = app.world().resource::<AssetServer>().load("species/oak.species.ron");
+    let tree = app.world_mut().spawn((Tree::new(tree).with_seed(1), TREE_TRANSFORM)).id();
+    let ready =
+        |world: &mut World| world.resource::<ActiveSway>().is_ready() && world.get::<TreeMeshes>(tree).is_some();
+    if !support::update_until(&mut app, ready) {
+        return Err("the tree did not get ready".into());
+    }
+    let model = app.world().get::<Grown>(tree).map(|grown| grown.model.clone()).ok_or("the tree has no model")?;
+    let model = app.world().resource::<Assets<TreeModel>>().get(&model).cloned().ok_or("the model is gone")?;
+    let vertices = bound_points(&model);
+    let read = install_probe(&mut app, &vertices);
+
+    let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
+    for time_s in TIMES_S {
+        *app.world_mut().resource_mut::<WindClock>() = WindClock { time_s, previous_s: time_s };
+        let posed = support::cpu_poses(app.world().resource::<ActiveSway>(), &model, &TREE_TRANSFORM, time_s);
+        let carried = read_back(&mut app, &read, vertices.len())?;
+        for (vertex, there) in vertices.iter().zip(carried) {
+            let (here, _) = posed[vertex.beam].carry(&model.beams[vertex.beam], vertex.s, vertex.at);
+            worst = worst.max(f64::from(here.distance(there)));
+            largest = largest.max(f64::from(here.distance(vertex.at)));
+        }
+    }
+    let height_m = f64::from(model.height_m());
+    Ok((worst / height_m, largest / height_m))
+}
+
+fn headless_app() -> App {
+    let mut app = support::headless_app(Duration::ZERO, None);
+    app.insert_resource(Wind { speed: STORM_M_S, seed: 3, ..default() })
+        .add_plugins(ExtractResourcePlugin::<Probe>::default());
+    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+        render_app.add_systems(RenderGraph, carry_points.before(camera_driver));
+    }
+    app.finish();
+    app.cleanup();
+    app
+}
+
+/// A vertex at rest and its beam.
+struct BoundPoint {
+    at: Vec3,
+    beam: usize,
+    s: f32,
+}
+
+/// All vertices of the wood, and the anchors of the leaves.
+fn bound_points(model: &TreeModel) -> Vec<BoundPoint> {
+    let point = |at: Vec3, sway: &[f32; 4]| BoundPoint { at, beam: sway[0] as usize, s: sway[1] };
+    let wood = model.wood.positions.iter().zip(&model.wood.sway).map(|(at, sway)| point(Vec3::from_array(*at), sway));
+    let leaves = model.leaves.anchor.iter().zip(&model.leaves.sway);
+    wood.chain(leaves.map(|(at, sway)| point(Vec3::from_slice(at), sway))).collect()
+}
+
+fn install_probe(app: &mut App, vertices: &[BoundPoint]) -> support::ReadBack {
+    let rows: Vec<Vec4> =
+        vertices.iter().flat_map(|v| [v.at.extend(v.beam as f32), Vec4::new(v.s, 0.0, 0.0, 0.0)]).collect();
+    let world = app.world_mut();
+    let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wesl(CARRY_SHADER, "carry_points.wesl"));
+    let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
+    let points = buffers.add(ShaderBuffer::from(rows));
+    let carried = buffers.add(ShaderBuffer::from(vec![Vec4::ZERO; vertices.len()]));
+    let tables = world.resource::<SwayBuffers>().clone();
+    world.insert_resource(Probe { points, carried: carried.clone(), shader, tables, vertices: vertices.len() as u32 });
+    support::read_every_frame(world, carried)
+}
+
+/// Renders frames until what is read back is surely of the current time.
+fn read_back(app: &mut App, read: &support::ReadBack, count: usize) -> Result<Vec<Vec3>, String> {
+    const SETTLE_FRAMES: usize = 6;
+    for _ in 0..SETTLE_FRAMES {
+        support::render_frame(app)?;
+    }
+    let bytes = read.lock().ok().and_then(|mut slot| slot.take()).ok_or("nothing was read back")?;
+    let floats = support::floats(&bytes);
+    let points: Vec<Vec3> = floats.chunks_exact(4).map(Vec3::from_slice).collect();
+    if points.len() == count && floats.iter().skip(3).step_by(4).all(|w| *w == 1.0) {
+        Ok(points)
+    } else {
+        Err("the GPU did not write every vertex".into())
+    }
+}
+
+fn carry_points(mut pass: ProbePass, probe: Option<Res<Probe>>, buffers: Res<RenderAssets<GpuShaderBuffer>>) {
+    let Some(probe) = probe else { return };
+    let SwayBuffers { poses, beams, trees, frame, .. } = &probe.tables;
+    let bound = [poses, beams, trees, frame, &probe.points, &probe.carried].map(|handle| buffers.get(handle));
+    let [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)] = bound else { return };
+    let [a, b, c, d, e, f] = [a, b, c, d, e, f].map(|buffer| buffer.buffer.as_entire_buffer_binding());
+    let table = || storage_buffer_read_only_sized(false, None);
+    let entries = (table(), table(), table(), table(), table(), storage_buffer_sized(false, None));
+    pass.run(
+        ProbeShader { entry_point: "carry_points", shader: &probe.shader, defs: Vec::new() },
+        &BindGroupLayoutEntries::sequential(ShaderStages::COMPUTE, entries),
+        &BindGroupEntries::sequential((a, b, c, d, e, f)),
+        [probe.vertices.div_ceil(64), 1],
+    );
+}
