@@ -65,7 +65,7 @@ impl Cell {
         Self::pack(buffer, planter.corner_m(cell), planter.cell_m())
     }
 
-    /// Its plants, as [`Planted::pack`] wrote them.
+    /// Its plants, packed.
     pub fn records(&self) -> &[[u32; 4]] {
         &self.records
     }

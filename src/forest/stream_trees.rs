@@ -1,28 +1,31 @@
 //! Streams the trees of near cells about the viewers.
 
 use super::cells::ForestCells;
-use crate::{cells::ViewerPose, tree::Tree, viewpoint::Viewpoints};
+use crate::{cells::ViewerPose, viewpoint::Viewpoints};
 use bevy::{ecs::system::SystemParam, prelude::*, tasks::AsyncComputeTaskPool};
 
-/// Which trees are drawn. Where nothing draws, all are.
+/// Which trees are drawn. Where nothing draws, all count as drawn.
 #[derive(SystemParam)]
 pub(super) struct DrawnTrees<'w, 's> {
     #[cfg(feature = "render")]
     capabilities: Option<Res<'w, crate::render::RenderCapabilities>>,
     #[cfg(feature = "render")]
     drawn: Query<'w, 's, (), With<crate::render::TreeMeshes>>,
-    trees: Query<'w, 's, (), With<Tree>>,
+    #[cfg(feature = "render")]
+    trees: Query<'w, 's, (), With<crate::tree::Tree>>,
     #[cfg(not(feature = "render"))]
-    marker: std::marker::PhantomData<&'w ()>,
+    marker: std::marker::PhantomData<(&'w (), &'s ())>,
 }
 
 impl DrawnTrees<'_, '_> {
-    /// A tree that the game has despawned is missed by nobody.
+    /// A tree that the game has despawned counts as drawn: nothing waits for it.
+    #[cfg(feature = "render")]
     fn contains(&self, tree: Entity) -> bool {
-        #[cfg(feature = "render")]
-        if self.capabilities.is_some() {
-            return self.drawn.contains(tree) || !self.trees.contains(tree);
-        }
+        self.capabilities.is_none() || self.drawn.contains(tree) || !self.trees.contains(tree)
+    }
+
+    #[cfg(not(feature = "render"))]
+    fn contains(&self, _: Entity) -> bool {
         true
     }
 }

@@ -40,7 +40,7 @@ const STORM_M_S: f32 = 28.0;
 const TIMES_S: [f64; 3] = [3.7, 61.3, 1000.1];
 
 const CARRY_SHADER: &str = "
-import bevy_windwood::render::shaders::{beam::carry, instances::{BeamPose, BeamRow, Frame, TreeRow}};
+import bevy_windwood::render::shaders::{beam::carry, frame::Frame, instances::{BeamPose, BeamRow, TreeRow}};
 @group(0) @binding(0) var<storage, read> poses: array<BeamPose>;
 @group(0) @binding(1) var<storage, read> beams: array<BeamRow>;
 @group(0) @binding(2) var<storage, read> trees: array<TreeRow>;

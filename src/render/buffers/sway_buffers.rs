@@ -7,7 +7,7 @@ pub(crate) const FIRST_BYTES: u64 = 256;
 
 /// The tables of all trees that sway and of the wind, for shaders of your own.
 ///
-/// To draw what moves with trees, import `bevy_windwood::render::shaders::instances` for the layouts and `beam` for `carry`, and
+/// To draw what moves with trees, import `bevy_windwood::render::shaders::instances` and `frame` for the layouts and `beam` for `carry`, and
 /// find a tree's row in the low 16 bits of its mesh tag. To read the wind, import `bevy_windwood::render::shaders::wind`, which has
 /// `velocity_at`, and bind `frame` at 103 and `winds` at 105 and 106 of the material's group.
 ///

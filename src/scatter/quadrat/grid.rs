@@ -102,7 +102,7 @@ impl QuadratGrid {
     /// How many quadrats hold 0, 1, 2, ... of the points.
     ///
     /// # Errors
-    /// As [`QuadratGrid::count`] and [`Frequencies::new`].
+    /// [`SettingError`] for the first point that is outside the ground or no number, and for counts that [`Frequencies::new`] refuses.
     pub fn frequencies(&self, points: &[DVec2]) -> Result<Frequencies, SettingError> {
         Frequencies::of_counts(&self.count(points)?)
     }
