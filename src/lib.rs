@@ -55,6 +55,7 @@ mod background;
 mod constants;
 mod interpolation;
 mod plugin_checks;
+mod removal;
 mod ron_text;
 mod schedule;
 mod sequence;

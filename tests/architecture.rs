@@ -33,7 +33,7 @@ const MAY_KNOW: [(&str, &[&str]); 13] = [
     ("cells", &["scatter"]),
     ("tree", &["dynamics", "texture"]),
     ("lod", &["tree", "texture", "dynamics"]),
-    ("sway", &["tree", "wind", "dynamics", "texture", "lod"]),
+    ("sway", &["tree", "wind", "dynamics"]),
     ("render", &["sway", "lod", "tree", "texture", "wind", "dynamics"]),
     ("grass", &["sway", "render"]),
     ("fire", &["sway", "wind", "render"]),

@@ -47,7 +47,7 @@ fn covered(size: (u32, u32), settings: ForestSettings, (species, mature_years): 
     // Meshes and pipelines of the latest trees take some frames.
     (0..6).for_each(|_| capture::step(&mut app));
     let picture = capture::capture(&mut app, &target, size).expect("a picture");
-    picture.pixels().filter(|pixel| !(pixel.0[0] > 200 && pixel.0[1] < 60 && pixel.0[2] > 200)).count()
+    picture.pixels().filter(|pixel| !support::is_background(pixel)).count()
 }
 
 #[test]

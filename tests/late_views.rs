@@ -7,7 +7,7 @@ use bevy::prelude::*;
 use bevy_windwood::prelude::*;
 use image::RgbaImage;
 use std::time::Duration;
-use support::capture;
+use support::{capture, covered};
 
 const SIZE: (u32, u32) = (160, 80);
 
@@ -40,12 +40,6 @@ fn spawn_camera(app: &mut App) -> Handle<Image> {
 fn picture(app: &mut App, target: &Handle<Image>) -> RgbaImage {
     (0..8).for_each(|_| capture::step(app));
     capture::capture(app, target, SIZE).expect("a picture")
-}
-
-/// Share of the picture that is not background.
-fn covered(picture: &RgbaImage) -> f32 {
-    let drawn = picture.pixels().filter(|pixel| !(pixel.0[0] > 200 && pixel.0[1] < 60 && pixel.0[2] > 200)).count();
-    drawn as f32 / (SIZE.0 * SIZE.1) as f32
 }
 
 #[test]

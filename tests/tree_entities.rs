@@ -10,7 +10,7 @@ use bevy_windwood::{
 };
 use image::RgbaImage;
 use std::time::Duration;
-use support::capture;
+use support::{capture, covered, is_background};
 
 const SIZE: (u32, u32) = (160, 120);
 
@@ -47,15 +47,6 @@ fn meshes(app: &App, tree: Entity) -> Vec<Entity> {
 fn rows(app: &App, tree: Entity) -> Vec<u32> {
     let tag = |mesh: Entity| app.world().get::<MeshTag>(mesh).expect("it has a tag").value & 0xffff;
     meshes(app, tree).into_iter().map(tag).collect()
-}
-
-fn is_tree(pixel: &image::Rgba<u8>) -> bool {
-    !(pixel.0[0] > 200 && pixel.0[1] < 60 && pixel.0[2] > 200)
-}
-
-/// Share of the picture that is not background.
-fn covered(picture: &RgbaImage) -> f32 {
-    picture.pixels().filter(|pixel| is_tree(pixel)).count() as f32 / (SIZE.0 * SIZE.1) as f32
 }
 
 /// The next picture, without waiting for anything.
@@ -134,8 +125,8 @@ fn visibility_that_a_game_sets_stays() {
         assert_eq!(own.collect::<Vec<_>>(), [Visibility::Hidden, Visibility::Inherited], "at {distance_m} m");
     }
     let picture = next_picture(&mut app, &target);
-    let left = picture.enumerate_pixels().filter(|(x, _, pixel)| *x < SIZE.0 / 2 && is_tree(pixel)).count();
-    let right = picture.enumerate_pixels().filter(|(x, _, pixel)| *x >= SIZE.0 / 2 && is_tree(pixel)).count();
+    let left = picture.enumerate_pixels().filter(|(x, _, pixel)| *x < SIZE.0 / 2 && !is_background(pixel)).count();
+    let right = picture.enumerate_pixels().filter(|(x, _, pixel)| *x >= SIZE.0 / 2 && !is_background(pixel)).count();
     assert!(right > 20 * left.max(1), "{left} pixels where the hidden tree stands, {right} where the other does");
 }
 
@@ -180,7 +171,7 @@ fn no_frame_is_without_trees_when_views_come() {
 fn crown_x(picture: &RgbaImage) -> f32 {
     let drawn: Vec<f32> = picture
         .enumerate_pixels()
-        .filter(|(_, y, pixel)| *y < SIZE.1 / 2 && is_tree(pixel))
+        .filter(|(_, y, pixel)| *y < SIZE.1 / 2 && !is_background(pixel))
         .map(|(x, ..)| x as f32)
         .collect();
     drawn.iter().sum::<f32>() / drawn.len().max(1) as f32

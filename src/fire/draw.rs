@@ -6,6 +6,7 @@ use super::{
     mesh::{bounds, fire_mesh},
 };
 use crate::{
+    plugin_checks::has_renderer,
     render::{RenderCapabilities, SwayBuffers},
     wind::WindClock,
 };
@@ -15,7 +16,6 @@ use bevy::{
     light::{NotShadowCaster, NotShadowReceiver},
     pbr::MaterialPlugin,
     prelude::*,
-    render::RenderApp,
 };
 
 /// Draws [`Fire`]s and spawns their lights. Needs [`TreeRenderPlugin`](crate::render::TreeRenderPlugin), which has the wind
@@ -24,11 +24,11 @@ pub struct FireDrawPlugin;
 
 impl Plugin for FireDrawPlugin {
     fn build(&self, app: &mut App) {
-        if app.get_sub_app(RenderApp).is_none() {
+        if !has_renderer(app) {
             return;
         }
         embedded_asset!(app, "shaders/fire.wesl");
-        let can_draw = resource_exists::<RenderCapabilities>.and_then(resource_exists::<SwayBuffers>);
+        let can_draw = resource_exists::<RenderCapabilities>;
         app.add_plugins((
             MaterialPlugin::<FireMaterial>::default(),
             MaterialPlugin::<ShelteredFireMaterial>::default(),

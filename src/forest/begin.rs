@@ -1,8 +1,8 @@
-//! Begins forests from their plans, and removes what belongs to them.
+//! Begins forests from their plans.
 
 use super::{
     cells::{ForestCells, SharedGround},
-    components::{Forest, ForestCell, ForestGround, ForestSettings},
+    components::{Forest, ForestGround, ForestSettings},
     cover::StandingGround,
 };
 use crate::{
@@ -69,20 +69,5 @@ pub(super) fn begin_forests(
             }
             Err(error) => warn!("forest: {error}; the last good one stays"),
         }
-    }
-}
-
-/// Removes all that belongs to a forest, when its [`Forest`] is removed.
-pub(super) fn remove_forest(
-    removed: On<Remove<Forest>>,
-    mut commands: Commands,
-    children: Query<&Children>,
-    cells: Query<(), With<ForestCell>>,
-) {
-    for child in children.get(removed.entity).into_iter().flatten().filter(|child| cells.contains(**child)) {
-        commands.entity(*child).try_despawn();
-    }
-    if let Ok(mut forest) = commands.get_entity(removed.entity) {
-        forest.try_remove::<ForestCells>();
     }
 }

@@ -62,12 +62,10 @@ impl ForestCells {
 
     /// Takes over the near trees of the plan before; what is of no use is returned. Where impostors have come or gone, trees have to be others.
     pub(super) fn take_over(&mut self, before: &mut Self) -> Vec<Entity> {
-        let empty = NearTrees::new(&self.settings, self.planter.cell_m(), self.planter.cells());
-        let Ok(near) = empty.map(|empty| std::mem::replace(&mut before.near, empty)) else { return Vec::new() };
         if (before.settings.far_to_m > 0.0) != (self.settings.far_to_m > 0.0) {
-            return near.entities().collect();
+            return before.near.entities().collect();
         }
-        self.near.take_over(near)
+        self.near.take_over(&mut before.near)
     }
 
     /// Whether every tree that is wanted from where the viewers are stands as an entity.

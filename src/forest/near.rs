@@ -92,12 +92,12 @@ impl NearTrees {
 
     /// Takes over the trees of the plan before. Each cell keeps them until it is planted anew; then those stay that the new plan has too.
     /// Cells of another size are of no use: their entities are returned.
-    pub fn take_over(&mut self, before: Self) -> Vec<Entity> {
+    pub fn take_over(&mut self, before: &mut Self) -> Vec<Entity> {
         if before.cell_m != self.cell_m {
             return before.entities().collect();
         }
         self.changes = before.changes + 1;
-        self.cells = before.cells;
+        self.cells = std::mem::take(&mut before.cells);
         for cell in self.cells.values_mut() {
             cell.is_outdated = true;
             cell.planted = Vec::new();

@@ -1,15 +1,16 @@
 //! Registers forests.
 
 use super::{
-    begin::{begin_forests, remove_forest},
-    cells::plant_cells,
-    components::{Forest, ForestSettings},
+    begin::begin_forests,
+    cells::{ForestCells, plant_cells},
+    components::{Forest, ForestCell, ForestSettings},
     loader::ForestLoader,
     near_services::{articulate_near_trees, spawn_wind_cells},
     stream_trees::stream_trees,
 };
 use crate::{
     plugin_checks::{require_assets, require_plugin},
+    removal::remove_made,
     scatter::ForestPlan,
     schedule::{WindwoodSystems, configure_sets},
     timing::timed,
@@ -32,7 +33,7 @@ impl Plugin for ForestPlugin {
             .register_asset_reflect::<ForestPlan>()
             .register_type::<Forest>()
             .register_type::<ForestSettings>()
-            .add_observer(remove_forest);
+            .add_observer(remove_made::<Forest, ForestCell, ForestCells>);
         let stream = timed!(app, begin_forests, plant_cells, stream_trees, spawn_wind_cells, articulate_near_trees);
         app.add_systems(Update, stream.chain().in_set(WindwoodSystems::Stream));
     }

@@ -5,13 +5,15 @@ use super::{
     material::{GrassMaterial, base_material, grass_material},
     mesh::{bounds, still_mesh, swaying_mesh},
 };
-use crate::render::{RenderCapabilities, SwayBuffers};
+use crate::{
+    plugin_checks::has_renderer,
+    render::{RenderCapabilities, SwayBuffers},
+};
 use bevy::{
     asset::embedded_asset,
     camera::{primitives::Aabb, visibility::NoAutoAabb},
     pbr::MaterialPlugin,
     prelude::*,
-    render::RenderApp,
     shader::load_shader_library,
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
 };
@@ -23,12 +25,12 @@ pub struct GrassDrawPlugin;
 
 impl Plugin for GrassDrawPlugin {
     fn build(&self, app: &mut App) {
-        if app.get_sub_app(RenderApp).is_none() {
+        if !has_renderer(app) {
             return;
         }
         load_shader_library!(app, "shaders/blade.wesl");
         embedded_asset!(app, "shaders/grass.wesl");
-        let can_draw = resource_exists::<RenderCapabilities>.and_then(resource_exists::<SwayBuffers>);
+        let can_draw = resource_exists::<RenderCapabilities>;
         app.add_plugins(MaterialPlugin::<GrassMaterial>::default()).add_observer(remove_patch_meshes).add_systems(
             Update,
             (start_making_meshes, show_patches)

@@ -6,6 +6,7 @@ use bevy::{
     render::{
         RenderApp,
         batching::gpu_preprocessing::{GpuPreprocessingMode, GpuPreprocessingSupport},
+        render_resource::WgpuLimits,
         renderer::RenderDevice,
     },
 };
@@ -25,14 +26,19 @@ pub struct RenderCapabilities {
 
 /// Storage buffers that a shader stage needs: seven for the pose pass; to draw, our four and Bevy's own for meshes, instances and
 /// skins.
-pub(crate) const STORAGE_BUFFERS_NEEDED: u32 = 8;
+const STORAGE_BUFFERS_NEEDED: u32 = 8;
+
+/// Whether the shaders of a device can read the tables of trees. Where they cannot, even the layout of a pipeline would be an error.
+pub(crate) fn can_read_tables(limits: &WgpuLimits) -> bool {
+    limits.max_storage_buffers_per_shader_stage >= STORAGE_BUFFERS_NEEDED
+}
 
 impl RenderCapabilities {
     /// Those of the app's device; none without a renderer.
     pub(crate) fn of(app: &App) -> Option<Self> {
         let render_world = app.get_sub_app(RenderApp)?.world();
         let limits = render_world.get_resource::<RenderDevice>()?.limits();
-        let sways = limits.max_storage_buffers_per_shader_stage >= STORAGE_BUFFERS_NEEDED;
+        let sways = can_read_tables(&limits);
         if !sways {
             warn!(
                 "windwood: this device has {} storage buffers a shader stage and swaying trees need {STORAGE_BUFFERS_NEEDED}; \

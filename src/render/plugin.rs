@@ -38,21 +38,21 @@ use super::{
     wind_exposure::{WindExposure, update_wind_exposure},
 };
 use crate::{
-    plugin_checks::require_renderer_before,
+    plugin_checks::{has_renderer, require_renderer_before},
     schedule::{WindwoodSystems, configure_sets},
     sway::ActiveSway,
     timing::timed,
     tree::store_baked_models,
     viewpoint::give_cameras_viewpoints,
 };
-use bevy::{camera::visibility::VisibilitySystems, pbr::MaterialPlugin, prelude::*, render::RenderApp};
+use bevy::{camera::visibility::VisibilitySystems, pbr::MaterialPlugin, prelude::*};
 
 /// Draws [`Tree`](crate::tree::Tree)s, posed on the GPU. Without a renderer it only says so.
 pub struct TreeRenderPlugin;
 
 impl Plugin for TreeRenderPlugin {
     fn build(&self, app: &mut App) {
-        if app.get_sub_app(RenderApp).is_none() {
+        if !has_renderer(app) {
             info!("windwood: there is no renderer; trees move but are not drawn");
             return;
         }

@@ -1,23 +1,25 @@
 //! Registers the drawing of the ground.
 
 use super::{
-    components::{GroundLook, TerrainSettings},
-    ecs::stream::{GroundTexture, begin_terrains, recolour_ground, remove_terrain, stream_ground},
+    components::{GroundLook, Terrain, TerrainSettings},
+    ecs::stream::{GroundTexture, TerrainChunk, TerrainChunks, begin_terrains, recolour_ground, stream_ground},
     material::GroundMaterial,
 };
 use crate::{
+    plugin_checks::has_renderer,
+    removal::remove_made,
     schedule::{WindwoodSystems, configure_sets},
     timing::timed,
     viewpoint::give_cameras_viewpoints,
 };
-use bevy::{asset::embedded_asset, pbr::MaterialPlugin, prelude::*, render::RenderApp};
+use bevy::{asset::embedded_asset, pbr::MaterialPlugin, prelude::*};
 
 /// Draws [`Terrain`](super::Terrain). Without a renderer it does nothing.
 pub struct TerrainDrawPlugin;
 
 impl Plugin for TerrainDrawPlugin {
     fn build(&self, app: &mut App) {
-        if app.get_sub_app(RenderApp).is_none() {
+        if !has_renderer(app) {
             return;
         }
         embedded_asset!(app, "shaders/ground.wesl");
@@ -28,7 +30,7 @@ impl Plugin for TerrainDrawPlugin {
             .register_type::<TerrainSettings>()
             .register_type::<GroundLook>()
             .init_resource::<GroundTexture>()
-            .add_observer(remove_terrain);
+            .add_observer(remove_made::<Terrain, TerrainChunk, TerrainChunks>);
         let stream = timed!(app, begin_terrains, recolour_ground, stream_ground);
         app.add_systems(Update, stream.chain().in_set(WindwoodSystems::Stream));
     }

@@ -1,6 +1,6 @@
 //! What must hold of every tree, whatever its species: checked on random species and on the shipped ones.
 
-mod strategies;
+pub(super) mod strategies;
 mod wood_surface;
 
 use bevy::math::Vec3;

@@ -1,6 +1,6 @@
 //! A small forest of firs in front of a camera.
 
-use super::{capture, headless_app, update_until};
+use super::{capture, covered, headless_app, update_until};
 use bevy::{prelude::*, render::render_resource::WgpuLimits};
 use bevy_windwood::{
     prelude::*,
@@ -63,8 +63,6 @@ impl TestForest {
 
     /// Share of the picture that is not background.
     pub fn covered(&mut self) -> f32 {
-        let picture = self.picture();
-        let drawn = picture.pixels().filter(|pixel| !(pixel.0[0] > 200 && pixel.0[1] < 60 && pixel.0[2] > 200)).count();
-        drawn as f32 / (SIZE.0 * SIZE.1) as f32
+        covered(&self.picture())
     }
 }

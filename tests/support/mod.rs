@@ -27,6 +27,7 @@ use bevy_windwood::{
 };
 #[allow(unused_imports, reason = "not every test renders frame by frame")]
 pub use capture::render_frame;
+use image::{Rgba, RgbaImage};
 use std::{
     sync::{Arc, Mutex},
     time::Duration,
@@ -48,6 +49,17 @@ pub fn update_until(app: &mut App, is_done: impl Fn(&mut World) -> bool) -> bool
         std::thread::sleep(Duration::from_millis(5));
         is_done(app.world_mut())
     })
+}
+
+/// Whether a pixel is of the clear colour of our pictures, magenta, which nothing else has.
+pub fn is_background(pixel: &Rgba<u8>) -> bool {
+    pixel.0[0] > 200 && pixel.0[1] < 60 && pixel.0[2] > 200
+}
+
+/// Share of a picture that is not background.
+pub fn covered(picture: &RgbaImage) -> f32 {
+    let drawn = picture.pixels().filter(|pixel| !is_background(pixel)).count();
+    drawn as f32 / (picture.width() * picture.height()) as f32
 }
 
 /// The latest bytes that were read back from the GPU.

@@ -3,16 +3,19 @@
 use super::{
     near_mask::update_near_mask,
     species::{ImpostorSpeciesLibrary, bake_impostor_species},
-    tiles::{remove_impostors, stream_impostor_tiles},
+    tiles::{ForestImpostors, ImpostorTile, stream_impostor_tiles},
 };
 use crate::{
     forest::{
+        Forest,
         cells::plant_cells,
         cull::{ForestCulling, cull_cells, measure_species},
         diagnose::ForestGizmoPlugin,
     },
+    plugin_checks::has_renderer,
+    removal::remove_made,
     render::{
-        RenderCapabilities, SwayBuffers,
+        RenderCapabilities,
         impostors::{
             material::{ImpostorExtension, ImpostorMaterial},
             near_mask::NearMask,
@@ -22,7 +25,7 @@ use crate::{
     schedule::WindwoodSystems,
     timing::timed,
 };
-use bevy::{pbr::MaterialPlugin, prelude::*, render::RenderApp};
+use bevy::{pbr::MaterialPlugin, prelude::*};
 
 /// Draws the trees of [`Forest`](crate::forest::Forest)s that are too far to be entities, and hides near cells that nobody sees. Needs
 /// [`TreeRenderPlugin`](crate::render::TreeRenderPlugin). Without a renderer it only culls.
@@ -35,12 +38,12 @@ impl Plugin for ForestRenderPlugin {
             .register_type::<ForestCulling>()
             .init_resource::<ForestCulling>()
             .add_systems(PostUpdate, cull.chain().in_set(WindwoodSystems::Cull));
-        if app.get_sub_app(RenderApp).is_none() {
+        if !has_renderer(app) {
             return;
         }
-        let can_draw = resource_exists::<RenderCapabilities>.and_then(resource_exists::<SwayBuffers>);
+        let can_draw = resource_exists::<RenderCapabilities>;
         app.add_plugins(MaterialPlugin::<ImpostorMaterial>::default())
-            .add_observer(remove_impostors)
+            .add_observer(remove_made::<Forest, ImpostorTile, ForestImpostors>)
             .init_resource::<NearMask>()
             .init_resource::<ImpostorSpeciesLibrary>();
         let stream = timed!(app, bake_impostor_species, stream_impostor_tiles);

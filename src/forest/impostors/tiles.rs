@@ -3,9 +3,10 @@
 use super::species::{ImpostorSpecies, ImpostorSpeciesLibrary};
 use crate::{
     cells::{CellStream, Orders, StreamSettings, ViewerPose},
-    forest::{Forest, cells::ForestCells, reach::reaching},
+    forest::{cells::ForestCells, reach::reaching},
     render::{
         RenderCapabilities,
+        draw::layers::insert_layers_and_culling,
         impostors::mesh::{ImpostorInstance, impostor_mesh},
     },
     scatter::Planted,
@@ -16,7 +17,7 @@ use crate::{
 use bevy::{
     camera::{
         primitives::Aabb,
-        visibility::{NoAutoAabb, NoCpuCulling, RenderLayers},
+        visibility::{NoAutoAabb, RenderLayers},
     },
     platform::collections::HashMap,
     prelude::*,
@@ -230,12 +231,7 @@ impl TileSpawner<'_> {
     fn spawn(&self, bundle: impl Bundle, commands: &mut Commands) -> Entity {
         let mut spawned =
             commands.spawn((ImpostorTile, ChildOf(self.forest), Visibility::default(), NoAutoAabb, bundle));
-        if self.capabilities.culls_on_gpu {
-            spawned.insert(NoCpuCulling);
-        }
-        if let Some(layers) = self.layers {
-            spawned.insert(layers.clone());
-        }
+        insert_layers_and_culling(&mut spawned, self.layers, self.capabilities);
         spawned.id()
     }
 }
@@ -273,20 +269,5 @@ impl ForestImpostors {
             tiles.insert(*place, tile);
             false
         });
-    }
-}
-
-/// Removes what is drawn of a forest beside its trees, when its [`Forest`] is removed.
-pub(super) fn remove_impostors(
-    removed: On<Remove<Forest>>,
-    mut commands: Commands,
-    children: Query<&Children>,
-    tiles: Query<(), With<ImpostorTile>>,
-) {
-    for child in children.get(removed.entity).into_iter().flatten().filter(|child| tiles.contains(**child)) {
-        commands.entity(*child).try_despawn();
-    }
-    if let Ok(mut forest) = commands.get_entity(removed.entity) {
-        forest.try_remove::<ForestImpostors>();
     }
 }

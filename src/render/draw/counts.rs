@@ -1,8 +1,11 @@
 //! How many trees are drawn at which level, for diagnostics and gizmos.
 
-use crate::render::{
-    instances::{components::TreeInstance, tables::InstanceTables},
-    lod::thresholds::{LodSelection, MAX_LODS},
+use crate::{
+    lod::MOST_LEVELS,
+    render::{
+        instances::{components::TreeInstance, tables::InstanceTables},
+        lod::thresholds::LodSelection,
+    },
 };
 use bevy::{ecs::system::SystemParam, prelude::*};
 
@@ -15,10 +18,10 @@ pub(crate) struct TreesByLod<'w, 's> {
 
 impl TreesByLod<'_, '_> {
     /// Trees of each level, and how many of them fade into the next.
-    pub fn count(&self) -> ([usize; MAX_LODS], usize) {
-        let mut count = ([0; MAX_LODS], 0);
+    pub fn count(&self) -> ([usize; MOST_LEVELS], usize) {
+        let mut count = ([0; MOST_LEVELS], 0);
         for (selection, _) in &self.trees {
-            count.0[usize::from(selection.lod).min(MAX_LODS - 1)] += 1;
+            count.0[usize::from(selection.lod).min(MOST_LEVELS - 1)] += 1;
             count.1 += usize::from(selection.is_fading);
         }
         count

@@ -1,7 +1,25 @@
-//! Gives meshes of trees the render layers of their trees.
+//! Render layers of meshes: those of their trees or forests.
 
 use super::components::TreeMeshes;
-use bevy::{camera::visibility::RenderLayers, prelude::*};
+use crate::render::capabilities::RenderCapabilities;
+use bevy::{
+    camera::visibility::{NoCpuCulling, RenderLayers},
+    prelude::*,
+};
+
+/// Gives a mesh that is spawned the layers of its owner, and leaves its culling to the GPU, where that does it.
+pub(crate) fn insert_layers_and_culling(
+    mesh: &mut EntityCommands,
+    layers: Option<&RenderLayers>,
+    capabilities: RenderCapabilities,
+) {
+    if capabilities.culls_on_gpu {
+        mesh.insert(NoCpuCulling);
+    }
+    if let Some(layers) = layers {
+        mesh.insert(layers.clone());
+    }
+}
 
 /// Copies render layers that were changed or removed.
 pub(crate) fn copy_render_layers(

@@ -1,7 +1,10 @@
 //! Spawns and swaps the meshes of trees: one for the wood and one for the leaves of a level. All trees with a model and a level are drawn in
 //! one batch.
 
-use super::components::{DrawnTree, TreeMeshOf, TreeMeshes, TreePart};
+use super::{
+    components::{DrawnTree, TreeMeshOf, TreeMeshes, TreePart},
+    layers::insert_layers_and_culling,
+};
 use crate::{
     render::{
         capabilities::RenderCapabilities,
@@ -14,11 +17,7 @@ use crate::{
     },
     tree::Tree,
 };
-use bevy::{
-    camera::visibility::{NoCpuCulling, RenderLayers},
-    mesh::MeshTag,
-    prelude::*,
-};
+use bevy::{camera::visibility::RenderLayers, mesh::MeshTag, prelude::*};
 
 /// What the meshes of a tree follow from.
 type Drawn = (
@@ -95,19 +94,22 @@ impl MeshSpawner<'_> {
     fn spawn(&self, commands: &mut Commands) -> u8 {
         let LodSelection { lod, is_fading, .. } = *self.selection;
         let Some(level) = self.variant.lods.get(usize::from(lod)) else { return 0 };
+        let next = self.variant.lods.get(usize::from(lod) + 1).filter(|_| is_fading);
+        let next_wood = next.filter(|next| !next.is_wood_nested).map(|next| &next.wood);
+        let next_leaves = next.and_then(|next| next.leaves.as_ref());
         let fading = if is_fading { Fading::OUT } else { self.end_of(lod) };
-        let mut count = self.spawn_mesh(TreePart::Wood, &level.wood, lod, fading, commands);
-        if let Some(leaves) = &level.leaves {
-            count += self.spawn_mesh(TreePart::Leaves, leaves, lod, fading, commands);
-        }
-        let next = lod + 1;
-        let Some(level) = self.variant.lods.get(usize::from(next)).filter(|_| is_fading) else { return count };
-        let fading = Fading::IN.and(self.end_of(next));
-        if !level.is_wood_nested {
-            count += self.spawn_mesh(TreePart::Wood, &level.wood, next, fading, commands);
-        }
-        if let Some(leaves) = &level.leaves {
-            count += self.spawn_mesh(TreePart::Leaves, leaves, next, fading, commands);
+        let next_fading = Fading::IN.and(self.end_of(lod + 1));
+        let meshes = [
+            (TreePart::Wood, Some(&level.wood), lod, fading),
+            (TreePart::Leaves, level.leaves.as_ref(), lod, fading),
+            (TreePart::Wood, next_wood, lod + 1, next_fading),
+            (TreePart::Leaves, next_leaves, lod + 1, next_fading),
+        ];
+        let mut count = 0;
+        for (part, mesh, lod, fading) in meshes {
+            let Some(mesh) = mesh else { continue };
+            self.spawn_mesh(part, mesh, lod, fading, commands);
+            count += 1;
         }
         count
     }
@@ -118,7 +120,7 @@ impl MeshSpawner<'_> {
     }
 
     /// Spawns a mesh with all that it needs at once, since each insertion moves an entity in memory.
-    fn spawn_mesh(&self, part: TreePart, mesh: &PreparedMesh, lod: u8, fading: Fading, commands: &mut Commands) -> u8 {
+    fn spawn_mesh(&self, part: TreePart, mesh: &PreparedMesh, lod: u8, fading: Fading, commands: &mut Commands) {
         let row = self.instance.row;
         let fading = if mesh.can_fade && row.is_some() { fading } else { Fading::NONE };
         let tag = pack_tag(row.unwrap_or(0), lod, fading, self.instance.tint);
@@ -131,12 +133,6 @@ impl MeshSpawner<'_> {
             Some(swaying) if row.is_some() => commands.spawn((entity, MeshMaterial3d(swaying.clone()))),
             _ => commands.spawn((entity, MeshMaterial3d(mesh.materials.still.clone()))),
         };
-        if self.capabilities.culls_on_gpu {
-            spawned.insert(NoCpuCulling);
-        }
-        if let Some(layers) = self.layers {
-            spawned.insert(layers.clone());
-        }
-        1
+        insert_layers_and_culling(&mut spawned, self.layers, self.capabilities);
     }
 }

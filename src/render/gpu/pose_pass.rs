@@ -6,7 +6,7 @@
 //! shader no picture was there after two minutes, this way one (of two or three frames) after 19 s.
 
 use crate::render::{
-    buffers::sway_buffers::SwayBuffers, capabilities::STORAGE_BUFFERS_NEEDED, instances::workgroups::WORKGROUP_SIZE,
+    buffers::sway_buffers::SwayBuffers, capabilities::can_read_tables, instances::workgroups::WORKGROUP_SIZE,
 };
 use bevy::{
     core_pipeline::schedule::camera_driver,
@@ -63,9 +63,9 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(RenderGraph, pose_trees.in_set(RenderGraphSystems::Render).before(camera_driver));
 }
 
-/// Where there are too few buffers, trees stand still, and even the layout of a pipeline would be an error.
+/// Where the device cannot read the tables, trees stand still.
 fn can_pose(device: Res<RenderDevice>) -> bool {
-    device.limits().max_storage_buffers_per_shader_stage >= STORAGE_BUFFERS_NEEDED
+    can_read_tables(&device.limits())
 }
 
 #[derive(Resource)]

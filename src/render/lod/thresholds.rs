@@ -7,13 +7,11 @@
 
 use super::impostor_range::ImpostorRange;
 use crate::{
-    lod::Lens,
+    lod::{Lens, MOST_LEVELS},
     render::settings::{LevelOfDetail, LevelStyle},
 };
 use bevy::prelude::*;
 
-/// The most LOD levels that one tree has.
-pub(crate) const MAX_LODS: usize = 3;
 /// Farther than anything, m.
 const NEVER_M: f32 = 1e30;
 /// The meshes of both levels are there for so much longer than the fade itself, m, since viewers move on before the swap: a share of
@@ -47,7 +45,7 @@ pub(crate) struct LodDistance {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LodThresholds {
     /// Of each level, per metre of the tree's height; the last has no end, unless an impostor follows it.
-    pub ends: [f32; MAX_LODS],
+    pub ends: [f32; MOST_LEVELS],
     pub fade: f32,
     margin: f32,
     /// Where impostors begin, m.
@@ -61,7 +59,7 @@ impl LodThresholds {
             // The second thinning begins half way, as the eye sees distances.
             LevelStyle::Thinned => [high, (high * medium).sqrt(), medium],
             LevelStyle::Paper => [high, medium, NEVER_M],
-            LevelStyle::Full => [NEVER_M; MAX_LODS],
+            LevelStyle::Full => [NEVER_M; MOST_LEVELS],
         };
         let impostors_from_m = impostors.from_m.unwrap_or(NEVER_M);
         Self { ends, fade: settings.fade, margin: settings.distances.margin, impostors_from_m }
@@ -69,7 +67,7 @@ impl LodThresholds {
 
     /// The selection for a tree of a height, m, with `count` levels, after the selection before.
     pub fn select(&self, distance_m: f32, height_m: f32, count: u8, before: Option<LodSelection>) -> LodSelection {
-        let last = count.saturating_sub(1).min(MAX_LODS as u8 - 1);
+        let last = count.saturating_sub(1).min(MOST_LEVELS as u8 - 1);
         for lod in 0..last {
             let end_m = self.ends[usize::from(lod)] * height_m;
             let fading = LodSelection { lod, is_fading: true, is_impostor: false };
@@ -97,7 +95,7 @@ impl LodThresholds {
         let is_beyond =
             |distance_m: f32, end_m: f32| distance_m > (end_m * (1.0 + self.fade) + slack_m(end_m)) * (1.0 + margin);
         let is_impostor = is_beyond(distance.m, self.impostors_from_m)
-            || is_beyond(distance.scaled_m, self.ends[MAX_LODS - 1] * height_m * HEIGHT_TOLERANCE);
+            || is_beyond(distance.scaled_m, self.ends[MOST_LEVELS - 1] * height_m * HEIGHT_TOLERANCE);
         LodSelection { is_impostor, ..selection }
     }
 

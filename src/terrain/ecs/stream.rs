@@ -240,21 +240,6 @@ impl TerrainChunks {
     }
 }
 
-/// Removes the chunks of a terrain, when its [`Terrain`] is removed.
-pub(crate) fn remove_terrain(
-    removed: On<Remove<Terrain>>,
-    mut commands: Commands,
-    children: Query<&Children>,
-    chunks: Query<(), With<TerrainChunk>>,
-) {
-    for child in children.get(removed.entity).into_iter().flatten().filter(|child| chunks.contains(**child)) {
-        commands.entity(*child).try_despawn();
-    }
-    if let Ok(mut terrain) = commands.get_entity(removed.entity) {
-        terrain.try_remove::<TerrainChunks>();
-    }
-}
-
 fn chunk_mesh(vertices: ChunkVertices) -> Mesh {
     const { assert!(COARSEST_NEIGHBOUR < 8, "three bits of a gap's code") };
     Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)

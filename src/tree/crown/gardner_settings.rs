@@ -3,6 +3,7 @@
 use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
 
+use super::clamped_scale;
 use crate::{
     setting::{SettingError, require, require_colour},
     texture::fourier::FourierTexture,
@@ -97,8 +98,7 @@ impl GardnerCrown {
     /// The same crown `scale` (0.02 to 50) times as large: younger, where less than 1.
     #[must_use]
     pub fn scaled(self, scale: f32) -> Self {
-        // What is no size becomes the nearest that is one, NaN the least.
-        let scale = if scale > 0.02 { scale.min(50.0) } else { 0.02 };
+        let scale = clamped_scale(scale);
         Self {
             height_m: self.height_m * scale,
             diameter_m: self.diameter_m * scale,

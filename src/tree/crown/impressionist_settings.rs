@@ -3,7 +3,7 @@
 use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
 
-use super::profile::Profile;
+use super::{clamped_scale, profile::Profile};
 use crate::{
     setting::{SettingError, require},
     texture::linear,
@@ -206,8 +206,7 @@ impl ImpressionistCrown {
     /// The same crown `scale` (0.02 to 50) times as large: younger, where less than 1.
     #[must_use]
     pub fn scaled(self, scale: f32) -> Self {
-        // What is no size becomes the nearest that is one, NaN the least.
-        let scale = if scale > 0.02 { scale.min(50.0) } else { 0.02 };
+        let scale = clamped_scale(scale);
         Self {
             height_m: self.height_m * scale,
             diameter_m: self.diameter_m * scale,

@@ -21,5 +21,10 @@ mod statistics;
 pub use ellipsoids::silhouette_alpha;
 pub use statistics::CrownStatistics;
 
+/// A scale of crowns within its domain, 0.02 to 50: what is no size becomes the nearest that is one, NaN the least.
+fn clamped_scale(scale: f32) -> f32 {
+    if scale > 0.02 { scale.min(50.0) } else { 0.02 }
+}
+
 #[cfg(test)]
 mod tests;

@@ -89,23 +89,11 @@ fn grow(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tree::{Species, TreePlugin, growth::age::Age};
-
-    /// An app in which trees grow, and nothing else.
-    fn app() -> App {
-        let mut app = App::new();
-        app.add_plugins((AssetPlugin::default(), TaskPoolPlugin::default(), TreePlugin));
-        app
-    }
-
-    /// Runs frames until `is_so`.
-    fn wait(app: &mut App, mut is_so: impl FnMut(&mut World) -> bool) -> bool {
-        (0..10_000).any(|_| {
-            app.update();
-            std::thread::sleep(std::time::Duration::from_millis(1));
-            is_so(app.world_mut())
-        })
-    }
+    use crate::tree::{
+        Species,
+        ecs::test_app::{app, wait},
+        growth::age::Age,
+    };
 
     /// A tree that is baked quickly.
     fn sapling(species: &Handle<Species>) -> Tree {

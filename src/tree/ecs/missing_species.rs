@@ -66,57 +66,48 @@ pub(in crate::tree) fn report_missing_species(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tree::TreePlugin;
+    use crate::tree::ecs::test_app::{app, wait};
+
+    /// Takes the reports of the last frames.
+    fn reports(world: &mut World) -> Vec<MissingSpecies> {
+        world.resource_mut::<Messages<MissingSpecies>>().drain().collect()
+    }
 
     #[test]
     fn a_missing_file_is_reported_once_with_its_tree_and_path() {
-        let mut app = App::new();
-        app.add_plugins((TaskPoolPlugin::default(), AssetPlugin::default(), TreePlugin));
+        let mut app = app();
         let species: Handle<Species> = app.world().resource::<AssetServer>().load("species/no_such.species.ron");
         let tree = app.world_mut().spawn(Tree::new(species.clone())).id();
-        let mut reports = Vec::new();
-        let run = |app: &mut App, frames: u32, reports: &mut Vec<MissingSpecies>| {
-            for _ in 0..frames {
-                app.update();
-                reports.extend(app.world_mut().resource_mut::<Messages<MissingSpecies>>().drain());
-                std::thread::sleep(std::time::Duration::from_millis(1));
-            }
-        };
-        for _ in 0..10_000 {
-            run(&mut app, 1, &mut reports);
-            if !reports.is_empty() {
-                break;
-            }
-        }
+        let mut all = Vec::new();
+        wait(&mut app, |world| {
+            all.extend(reports(world));
+            !all.is_empty()
+        });
         // Trees that come later wait for the same species.
         app.world_mut().spawn(Tree::new(species));
-        run(&mut app, 20, &mut reports);
-        assert_eq!(reports.len(), 1, "{reports:?}");
-        let message = reports[0].to_string();
+        let mut frames = 0;
+        wait(&mut app, |world| {
+            all.extend(reports(world));
+            frames += 1;
+            frames == 20
+        });
+        assert_eq!(all.len(), 1, "{all:?}");
+        let message = all[0].to_string();
         assert!(message.contains(&tree.to_string()) && message.contains("species/no_such.species.ron"), "{message}");
     }
 
     #[test]
     fn a_tree_that_is_spawned_after_the_failure_is_reported() {
-        let mut app = App::new();
-        app.add_plugins((TaskPoolPlugin::default(), AssetPlugin::default(), TreePlugin));
+        let mut app = app();
         let species: Handle<Species> = app.world().resource::<AssetServer>().load("species/no_such.species.ron");
-        let failed = |app: &App| {
-            let state = app.world().resource::<AssetServer>().get_load_state(&species);
+        let has_failed = wait(&mut app, |world| {
+            let state = world.resource::<AssetServer>().get_load_state(&species);
             matches!(state, Some(LoadState::Failed(_)))
-        };
-        for _ in 0..10_000 {
-            app.update();
-            if failed(&app) {
-                break;
-            }
-            std::thread::sleep(std::time::Duration::from_millis(1));
-        }
-        assert!(failed(&app));
+        });
+        assert!(has_failed);
         (0..3).for_each(|_| app.update());
         let tree = app.world_mut().spawn(Tree::new(species.clone())).id();
         app.update();
-        let mut messages = app.world_mut().resource_mut::<Messages<MissingSpecies>>();
-        assert_eq!(messages.drain().map(|report| report.tree).collect::<Vec<_>>(), [tree]);
+        assert_eq!(reports(app.world_mut()).iter().map(|report| report.tree).collect::<Vec<_>>(), [tree]);
     }
 }

@@ -4,3 +4,5 @@ pub(super) mod grow_trees;
 pub(super) mod missing_species;
 pub(super) mod season;
 pub(super) mod species_models;
+#[cfg(test)]
+mod test_app;

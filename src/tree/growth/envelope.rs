@@ -238,6 +238,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::tree::tests::strategies::SHAPES;
 
     /// The shapes' outlines as schoolbooks write them, apart from the table of quadrics.
     fn written_girth_m(envelope: &Envelope, height_m: f32) -> f32 {
@@ -262,14 +263,6 @@ mod tests {
         let last = (0..farthest).rev().find(|&step| inside(from + direction * (step as f32 * step_m)));
         last.map_or(0.0, |step| step as f32 * step_m)
     }
-
-    const SHAPES: [EnvelopeShape; 5] = [
-        EnvelopeShape::Ellipsoid,
-        EnvelopeShape::Cone,
-        EnvelopeShape::Cylinder,
-        EnvelopeShape::Dome,
-        EnvelopeShape::InvertedCone,
-    ];
 
     fn shapes() -> impl Strategy<Value = EnvelopeShape> {
         prop::sample::select(SHAPES.to_vec())

@@ -45,7 +45,7 @@ fn orders() -> impl Strategy<Value = BranchOrder> {
     })
 }
 
-const SHAPES: [EnvelopeShape; 5] = [
+pub(in crate::tree) const SHAPES: [EnvelopeShape; 5] = [
     EnvelopeShape::Ellipsoid,
     EnvelopeShape::Cone,
     EnvelopeShape::Cylinder,
