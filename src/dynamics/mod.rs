@@ -32,7 +32,7 @@ pub(crate) mod response;
 pub use direction_map::{DirectionMap, LoadCoefficients};
 pub use exact_step::{ExactStep, OscillatorState};
 pub use frequency_classes::FrequencyClasses;
-pub use leaf::LeafResponse;
+pub use leaf::{LeafResponse, RestingLeaf};
 pub use load_basis::{LoadBasis, LoadBasisKind};
 pub use pose::{BeamDynamics, BeamPose, MODE_SHAPE, NO_PARENT, SLOPE_TIP, TIP_ANGLE_LIMIT, TreePoser};
 pub use response::ResponseTable;

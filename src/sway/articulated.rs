@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     dynamics::{
-        leaf,
+        RestingLeaf,
         pose::{BeamPose, TreePoser},
     },
     tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, SpeciesModels, Tree, TreeBeams, TreeLeaves, TreeModel},
@@ -165,16 +165,10 @@ pub(super) fn turn_leaves(
         let (Some(rest), Some(beam_pose)) = (model.beams.get(beam), pose.beams.get(beam)) else { return };
         let stands = if is_child { global.compute_transform() } else { *tree_transform };
         let (anchor, carried) = beam_pose.carry(rest, cluster.at, cluster.anchor);
-        let axis = carried * cluster.axis;
-        let turn = leaf::turn(
-            &species.species.foliage.response,
-            axis,
-            pose.wind,
-            seconds,
-            FLUTTER_PERIOD_S as f32,
-            cluster.phase,
-        );
+        let leaf = RestingLeaf { axis: cluster.axis, phase: cluster.phase };
+        let response = &species.species.foliage.response;
+        let rotation = response.rotation(&leaf, carried, pose.wind, seconds, FLUTTER_PERIOD_S as f32);
         let upright = Quat::from_rotation_arc(Vec3::Y, cluster.axis);
-        *transform = stands * Transform::from_translation(anchor).with_rotation(turn * carried * upright);
+        *transform = stands * Transform::from_translation(anchor).with_rotation(rotation * upright);
     });
 }

@@ -13,6 +13,7 @@ mod chart;
 mod figure9;
 mod figure9_chart;
 mod grid;
+mod leaves;
 mod levels;
 #[path = "../../src/dynamics/oracle/oscillator.rs"]
 #[expect(dead_code, reason = "a part of it is for the unit tests")]
@@ -44,6 +45,8 @@ enum Topic {
     Beams,
     /// Vertices posed on the GPU against the same on the CPU.
     Parity,
+    /// How far a small change of wind or branch turns a leaf, and leaves on the GPU against the same on the CPU.
+    Leaves,
     /// Random ground against its covariance models, and the round trip from ground to fitted model.
     Terrain,
     /// Point patterns against their laws, and the laws of real patterns.
@@ -97,6 +100,7 @@ fn main() -> ExitCode {
         Topic::Basis => basis::run(),
         Topic::Beams => beams::run(),
         Topic::Parity => parity::run(),
+        Topic::Leaves => leaves::run(),
         Topic::Terrain => terrain::run(),
         Topic::Points => points::run(),
         Topic::Scale => scale::run(),
