@@ -2,9 +2,10 @@
 
 use bevy::math::{IVec2, Vec2, Vec3};
 use bevy_windwood::{
+    LevelGround,
     cells::{Cell, CellStore, CellStream, Orders, StreamSettings, Trunk, ViewerPose},
     scatter::{
-        ForestPlan, LevelGround, Planter,
+        ForestPlan, Planter,
         plan::{Area, Shape},
     },
 };

@@ -4,10 +4,13 @@
 mod forest_plans;
 
 use bevy::math::IVec2;
-use bevy_windwood::scatter::{
-    ForestPlan, LevelGround, Planter,
-    counts::{CountKind, Frequencies, by_likelihood, characterise},
-    plan::{Area, Shape},
+use bevy_windwood::{
+    LevelGround,
+    scatter::{
+        ForestPlan, Planter,
+        counts::{CountKind, Frequencies, by_likelihood, characterise},
+        plan::{Area, Shape},
+    },
 };
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use forest_plans::{shipped, shipped_with_many_areas};

@@ -1,12 +1,15 @@
 //! The time to sample random ground, and to analyse a map.
 
 use bevy::math::DVec2;
-use bevy_windwood::terrain::{
-    CovarianceModel, ElevationGrid, Heightfield, Layers, TerrainSettings, TurningBands, TurningBandsSettings,
-    Variogram, VariogramSettings,
-    chunk::{ChunkKey, chunk_vertices},
-    fit_model, fit_models,
-    pyramid::{Eye, Pyramid},
+use bevy_windwood::{
+    Ground,
+    terrain::{
+        CovarianceModel, ElevationGrid, Layers, TerrainSettings, TurningBands, TurningBandsSettings, Variogram,
+        VariogramSettings,
+        chunk::{ChunkKey, chunk_vertices},
+        fit_model, fit_models,
+        pyramid::{Eye, Pyramid},
+    },
 };
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::{hint::black_box, sync::Arc};

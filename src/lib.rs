@@ -45,6 +45,8 @@
 //! | [`cells`] | the grid of a forest: what to plant, what is seen, stems by place; no ECS | scatter |
 //! | [`forest`] | forests that grow from plans around the viewers, [`Forest`](forest::Forest) | scatter, cells, terrain, tree, lod, sway, wind, render |
 //!
+//! What all rooms may use lies beside `lib.rs`: [`Ground`], [`Viewpoint`], [`SettingError`] and their like.
+//!
 //! Order your own systems against the sets of [`WindwoodSystems`].
 //!
 //! # Features
@@ -53,9 +55,11 @@
 
 mod background;
 mod constants;
+mod ground;
 mod interpolation;
 mod plugin_checks;
 mod removal;
+mod ron_loader;
 mod ron_text;
 mod schedule;
 mod sequence;
@@ -78,6 +82,8 @@ pub mod texture;
 pub mod tree;
 pub mod wind;
 
+pub use ground::{Ground, LevelGround};
+pub use ron_loader::RonLoadError;
 pub use ron_text::SyntaxError;
 pub use schedule::WindwoodSystems;
 pub use setting::SettingError;
@@ -91,12 +97,12 @@ pub mod prelude {
     #[cfg(feature = "render")]
     pub use crate::render::{LevelOfDetail, LevelStyle, TreeLighting, TreeMeshes};
     pub use crate::{
-        Viewpoint, WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
+        Ground, Viewpoint, WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
         fire::{Fire, FireLook, FireShape},
         forest::{Forest, ForestGround, ForestSettings},
         grass::{GrassGround, GrassLook, GrassPatch, GrassResponse, Sward, Tuft},
         sway::{ActiveSway, SwaySettings},
-        terrain::{GroundLook, Heightfield, Terrain, TerrainSettings},
+        terrain::{GroundLook, Terrain, TerrainSettings},
         tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Season, Species, Tree, TreeBeams, TreeLeaves},
         wind::{ActiveWind, Wind, WindCell, WindClock},
     };

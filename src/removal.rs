@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 
 /// An observer: when an `Owner` is removed, the children of its entity that are `Part`s are despawned, and `Made` is taken off it.
-pub(crate) fn remove_made<Owner: Component, Part: Component, Made: Component>(
+pub(crate) fn remove_made<Owner: Component, Part: Component, Made: Bundle>(
     removed: On<Remove<Owner>>,
     mut commands: Commands,
     children: Query<&Children>,

@@ -1,6 +1,10 @@
 //! The one error for a setting outside its domain: it names the field, the value and what is allowed.
 
-use std::{fmt::Display, ops::RangeInclusive};
+use bevy::log::warn;
+use std::{
+    fmt::{Debug, Display},
+    ops::RangeInclusive,
+};
 use thiserror::Error;
 
 /// A setting outside its domain.
@@ -45,6 +49,20 @@ pub(crate) fn require_colour(field: &str, colour: [f32; 3]) -> Result<(), Settin
     colour.into_iter().try_for_each(|channel| require(field, channel, 0.0..=1.0))
 }
 
+/// The settings to use: those that are wanted, if they are valid. Otherwise, with a warning, the last that were, or the default
+/// ones. `subject` says whose they are.
+pub(crate) fn valid_or_last<S: Clone + Debug + Default>(
+    subject: &str,
+    wanted: &S,
+    validate: impl Fn(&S) -> Result<(), SettingError>,
+    last: Option<&S>,
+) -> S {
+    let Err(error) = validate(wanted) else { return wanted.clone() };
+    let used = last.cloned().unwrap_or_default();
+    warn!("{subject}: {error}; {used:?} are used");
+    used
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -56,5 +74,13 @@ mod tests {
         assert_eq!(require("lines", 16_u32, 1..=256), Ok(()));
         let error = require_colour("colour", [0.0, 1.0, 2.0]).unwrap_err();
         assert_eq!(error.to_string(), "`colour` is 2, but must be 0 to 1");
+    }
+
+    #[test]
+    fn invalid_settings_give_way_to_the_last_valid_ones() {
+        let validate = |share: &f32| require("share", *share, 0.0..=1.0);
+        assert_eq!(valid_or_last("test", &0.7, validate, Some(&0.3)), 0.7);
+        assert_eq!(valid_or_last("test", &1.7, validate, Some(&0.3)), 0.3);
+        assert_eq!(valid_or_last("test", &f32::NAN, validate, None), 0.0);
     }
 }

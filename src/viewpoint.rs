@@ -10,29 +10,33 @@ use bevy::prelude::*;
 #[require(Transform)]
 pub struct Viewpoint;
 
+/// A place, and the camera that looks from there, if one does.
+type ViewpointData = (&'static GlobalTransform, Option<&'static Camera>, Option<&'static Projection>);
+
 /// The places of all viewpoints that count.
 #[derive(bevy::ecs::system::SystemParam)]
 pub(crate) struct Viewpoints<'w, 's> {
-    places: Query<'w, 's, (&'static GlobalTransform, Option<&'static Camera>), With<Viewpoint>>,
+    places: Query<'w, 's, ViewpointData, With<Viewpoint>>,
 }
 
 impl Viewpoints<'_, '_> {
     /// Their places in the world; none that is not a number.
     pub(crate) fn iter(&self) -> impl Iterator<Item = Vec3> + '_ {
-        self.frames().map(GlobalTransform::translation)
+        self.active().map(|(at, ..)| at.translation())
     }
 
     /// Fills `viewpoints` with where they are and where they look.
     pub(crate) fn fill(&self, viewpoints: &mut Vec<cells::ViewerPose>) {
         viewpoints.clear();
-        let one = |at: &GlobalTransform| cells::ViewerPose { eye_m: at.translation(), forward: at.forward().as_vec3() };
-        viewpoints.extend(self.frames().map(one));
+        let pose =
+            |at: &GlobalTransform| cells::ViewerPose { eye_m: at.translation(), forward: at.forward().as_vec3() };
+        viewpoints.extend(self.active().map(|(at, ..)| pose(at)));
     }
 
-    fn frames(&self) -> impl Iterator<Item = &GlobalTransform> {
-        let counts = |camera: Option<&Camera>| camera.is_none_or(|camera| camera.is_active);
-        let places = self.places.iter().filter(move |(_, camera)| counts(*camera));
-        places.map(|(place, _)| place).filter(|place| place.translation().is_finite())
+    /// Where they are in the world, and their cameras.
+    pub(crate) fn active(&self) -> impl Iterator<Item = (&GlobalTransform, Option<&Camera>, Option<&Projection>)> {
+        let is_active = |camera: Option<&Camera>| camera.is_none_or(|camera| camera.is_active);
+        self.places.iter().filter(move |(at, camera, _)| at.translation().is_finite() && is_active(*camera))
     }
 }
 

@@ -5,7 +5,7 @@ use bevy_windwood::{
     forest::{ForestCell, ForestCells},
     prelude::*,
     scatter::{ForestPlan, Planter, plan::Area, plan::GroundLimits, plan::Shape},
-    terrain::{Heightfield, chunk::drawn_height_m},
+    terrain::chunk::drawn_height_m,
 };
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::collections::BTreeSet;
@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 /// Hills that no triangle follows exactly.
 struct Hills;
 
-impl Heightfield for Hills {
+impl Ground for Hills {
     fn height_m(&self, place: DVec2) -> f64 {
         12.0 * (place.x / 31.0).sin() * (place.y / 17.0).cos()
     }

@@ -1,6 +1,6 @@
 //! Meadows and fires without rendering: how they are built, changed, refused and removed.
 
-use bevy::prelude::*;
+use bevy::{math::DVec2, prelude::*};
 use bevy_windwood::{
     fire::{Flames, flicker},
     grass::{Meadow, spine},
@@ -43,17 +43,17 @@ fn grown(app: &mut App, patch: GrassPatch) -> Entity {
 }
 
 #[test]
-fn a_patch_gets_the_blades_of_its_sward() {
+fn a_patch_gets_as_many_blades_as_its_sward_says() {
     let mut app = app();
     let patch = grown(&mut app, lawn(3.0));
     assert_eq!(meadow(&app, patch).blades.len() as u64, lawn(3.0).sward.blades());
 }
 
 #[test]
-fn a_patch_is_laid_out_again_on_other_ground() {
+fn blades_are_laid_out_again_when_the_ground_is_replaced() {
     let mut app = app();
     let patch = grown(&mut app, lawn(3.0));
-    app.world_mut().entity_mut(patch).insert(GrassGround(Arc::new(|at: Vec2| 2.0 + at.x)));
+    app.world_mut().entity_mut(patch).insert(GrassGround(Arc::new(|at: DVec2| 2.0 + at.x)));
     wait_until(&mut app, "the slope", |world| {
         world.get::<Meadow>(patch).is_some_and(|meadow| meadow.blades[0].root.y != 0.0)
     });
@@ -61,7 +61,7 @@ fn a_patch_is_laid_out_again_on_other_ground() {
 }
 
 #[test]
-fn a_new_look_keeps_the_blades_and_a_new_sward_does_not() {
+fn blades_are_laid_out_again_for_a_new_sward_but_not_for_a_new_look() {
     let mut app = app();
     let patch = grown(&mut app, lawn(3.0));
     let before = meadow(&app, patch).blades.clone();
@@ -77,7 +77,7 @@ fn a_new_look_keeps_the_blades_and_a_new_sward_does_not() {
 }
 
 #[test]
-fn a_patch_with_a_setting_out_of_range_keeps_its_meadow() {
+fn an_invalid_patch_keeps_its_last_good_meadow() {
     let mut app = app();
     let patch = grown(&mut app, lawn(3.0));
     let before = meadow(&app, patch).clone();
@@ -94,7 +94,7 @@ fn a_patch_with_a_setting_out_of_range_keeps_its_meadow() {
 }
 
 #[test]
-fn a_removed_patch_has_no_meadow() {
+fn the_meadow_of_a_removed_patch_is_removed() {
     let mut app = app();
     let (kept, gone) = (grown(&mut app, lawn(3.0)), grown(&mut app, lawn(2.0)));
     app.world_mut().entity_mut(kept).remove::<GrassPatch>();
@@ -113,7 +113,7 @@ fn a_removed_patch_has_no_meadow() {
 }
 
 #[test]
-fn a_fire_with_a_setting_out_of_range_keeps_its_flames() {
+fn an_invalid_fire_keeps_its_last_good_flames() {
     let mut app = app();
     let fire = app.world_mut().spawn(Fire::default()).id();
     app.update();
@@ -129,7 +129,7 @@ fn a_fire_with_a_setting_out_of_range_keeps_its_flames() {
 }
 
 #[test]
-fn a_removed_fire_has_no_flames() {
+fn the_flames_of_a_removed_fire_are_removed() {
     let mut app = app();
     let fire = app.world_mut().spawn(Fire::default()).id();
     app.update();

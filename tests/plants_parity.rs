@@ -4,6 +4,7 @@ mod support;
 
 use bevy::{
     core_pipeline::schedule::camera_driver,
+    math::DVec2,
     prelude::*,
     render::{
         RenderApp,
@@ -77,7 +78,7 @@ struct Probe {
 #[test]
 fn wind_and_bent_blades_agree_on_gpu_and_cpu() {
     let sward = Sward { width_m: 4.0, depth_m: 4.0, seed: 2, ..default() };
-    let blades = layout_blades(&sward, |at| 0.1 * at.x);
+    let blades = layout_blades(&sward, &|at: DVec2| 0.1 * at.x);
     let winds: Vec<Vec2> = (0..blades.len()).map(|k| Vec2::from_angle(k as f32) * (k % 40) as f32).collect();
     // The wind blows along x; between its columns, 8 m apart in z, the two interpolate differently.
     let places: Vec<Vec2> =

@@ -1,4 +1,4 @@
-//! Every species that is shipped, and what becomes of their files when somebody's keyboard slips.
+//! Every species that is shipped, and species files with typing errors.
 
 use bevy_windwood::tree::{Species, SpeciesError, TreeModel, foliage::CLUSTERS_LIMIT, growth::BEAMS_LIMIT};
 use bevy_windwood::{SettingError, SyntaxError};
@@ -32,7 +32,7 @@ fn check(name: &str, species: &Species, age_years: f32, seed: u64) -> TreeModel 
 }
 
 #[test]
-fn there_are_twelve_kinds_at_least() {
+fn twelve_kinds_of_trees_are_shipped() {
     let wanted = [
         "oak",
         "beech",
@@ -66,9 +66,9 @@ fn every_shipped_species_grows_from_sapling_to_old() {
     }
 }
 
-/// A tree is a draw among thousands: what it costs is bounded.
+/// Thousands of trees are drawn at once, so each has a budget.
 #[test]
-fn no_shipped_species_is_dear() {
+fn shipped_species_keep_to_the_budget_of_vertices_and_beams() {
     for (name, text) in shipped() {
         let species = Species::from_ron(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
         for seed in 0..2 {
@@ -80,25 +80,25 @@ fn no_shipped_species_is_dear() {
     }
 }
 
-/// Replaces one number of a file by something else: what is read is an error that says where, or a tree all the same.
+/// Replaces one number of a file by something else. Reading it gives an error that says where, or a species that grows.
 #[test]
-fn slips_of_the_keyboard_are_named_or_harmless() {
-    const SLIPS: [&str; 8] = ["NaN", "-1.0", "0", "1e30", "-1e30", "inf", "\"much\"", "99999999"];
+fn a_wrong_number_in_a_species_file_is_refused_with_its_place_or_grows_a_valid_tree() {
+    const WRONG: [&str; 8] = ["NaN", "-1.0", "0", "1e30", "-1e30", "inf", "\"much\"", "99999999"];
     let mut random = Xoshiro256PlusPlus::seed_from_u64(11);
     let (mut refused, mut grown) = (0, 0);
     for (name, text) in shipped() {
         let numbers: Vec<(usize, usize)> = numbers(&text);
         for _ in 0..12 {
             let (from, to) = numbers[random.random_range(0..numbers.len())];
-            let slip = SLIPS[random.random_range(0..SLIPS.len())];
-            let broken = format!("{}{slip}{}", &text[..from], &text[to..]);
+            let wrong = WRONG[random.random_range(0..WRONG.len())];
+            let broken = format!("{}{wrong}{}", &text[..from], &text[to..]);
             match Species::from_ron(&broken) {
                 Ok(species) => {
                     check(&name, &species, species.age.mature_years, 1);
                     grown += 1;
                 }
                 Err(SpeciesError::Syntax(SyntaxError { line, .. })) => {
-                    assert_eq!(line, text[..from].matches('\n').count() + 1, "{name}: {slip}");
+                    assert_eq!(line, text[..from].matches('\n').count() + 1, "{name}: {wrong}");
                     refused += 1;
                 }
                 Err(SpeciesError::Setting(SettingError { field, allowed, .. })) => {

@@ -5,7 +5,7 @@ mod support;
 use bevy::{math::DVec2, prelude::*};
 use bevy_windwood::{
     prelude::*,
-    terrain::{CovarianceModel, Heightfield, TerrainChunks, TurningBands, TurningBandsSettings},
+    terrain::{CovarianceModel, TerrainChunks, TurningBands, TurningBandsSettings},
 };
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::time::Duration;

@@ -6,7 +6,7 @@ use crate::{
     support::{options::SceneOptions, scene::Scene},
     window,
 };
-use bevy::{light::NotShadowCaster, prelude::*};
+use bevy::{light::NotShadowCaster, math::DVec2, prelude::*};
 use bevy_windwood::prelude::*;
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::{f32::consts::TAU, sync::Arc};
@@ -91,10 +91,10 @@ fn spawn_meadow(commands: &mut Commands, seed: u64) {
     let broad = Tuft { blades: 12, narrowest_m: 0.025, widest_m: 0.045, radius_m: 0.4, longest_m: 0.5, ..tuft };
     let far = Sward { width_m: 60.0, depth_m: 34.0, tufts_per_m2: 0.6, tuft: broad, seed: seed + 1, ..near.clone() };
     for (sward, middle) in [(near, Vec2::new(0.0, 0.3)), (far, Vec2::new(0.0, -22.2))] {
-        let ground = GrassGround(Arc::new(move |at| ground::meadow_height_m(at + middle)));
+        let height_m = move |at: DVec2| f64::from(ground::meadow_height_m(at.as_vec2() + middle));
         commands.spawn((
             GrassPatch { sward, ..default() },
-            ground,
+            GrassGround(Arc::new(height_m)),
             Transform::from_xyz(middle.x, 0.0, middle.y),
             NotShadowCaster,
         ));

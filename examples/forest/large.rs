@@ -2,7 +2,7 @@
 //! in its middle, as in figure 10 of Setas et al.
 
 use crate::{options::Options, support::landscape::Landscape};
-use bevy::{light::NotShadowCaster, prelude::*};
+use bevy::{light::NotShadowCaster, math::DVec2, prelude::*};
 use bevy_windwood::{
     forest::PlanCover,
     prelude::*,
@@ -127,7 +127,10 @@ pub fn spawn_hamlet(
             ..default()
         };
         let landscape = landscape.clone();
-        let height_m = move |at: Vec2| landscape.height_m(at.x + middle.x, at.y + middle.y);
+        let height_m = move |at: DVec2| {
+            let at = at.as_vec2() + middle;
+            f64::from(landscape.height_m(at.x, at.y))
+        };
         commands.spawn((
             GrassPatch { sward, ..default() },
             GrassGround(Arc::new(height_m)),

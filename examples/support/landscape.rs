@@ -1,9 +1,12 @@
 //! The ground of the scenes: a map of real elevations, with random detail below its resolution.
 
 use bevy::{math::DVec2, prelude::*};
-use bevy_windwood::terrain::{
-    CovarianceModel, ElevationGrid, ElevationMap, ElevationScale, Heightfield, Interpolation, Layers, MapPlacement,
-    TurningBands, TurningBandsSettings, chunk::drawn_height_m,
+use bevy_windwood::{
+    Ground,
+    terrain::{
+        CovarianceModel, ElevationGrid, ElevationMap, ElevationScale, Interpolation, Layers, MapPlacement,
+        TurningBands, TurningBandsSettings, chunk::drawn_height_m,
+    },
 };
 use std::{path::Path, sync::Arc};
 
@@ -19,7 +22,7 @@ pub const FINEST_CELL_M: f32 = 2.0;
 /// Ground with its origin somewhere in a map.
 #[derive(Clone)]
 pub struct Landscape {
-    pub ground: Arc<dyn Heightfield>,
+    pub ground: Arc<dyn Ground>,
     /// Corners of the map: (x, z), m.
     pub corners_m: [DVec2; 2],
 }
@@ -44,7 +47,7 @@ impl Landscape {
         let corner_m = -place * size_m;
         let placement = MapPlacement { west_m: corner_m.x, north_m: corner_m.y, interpolation: Interpolation::Bicubic };
         let map = ElevationMap::new(grid, placement).map_err(|error| format!("{name}: {error}"))?;
-        let layers: [Arc<dyn Heightfield>; 3] = [Arc::new(map), hills(0.22 * cell.x)?, bumps()?];
+        let layers: [Arc<dyn Ground>; 3] = [Arc::new(map), hills(0.22 * cell.x)?, bumps()?];
         Ok(Self { ground: Arc::new(Layers(layers.into())), corners_m: [corner_m, corner_m + size_m] })
     }
 
@@ -61,7 +64,7 @@ impl Landscape {
 }
 
 /// Hills between the samples of the map.
-fn hills(scale_m: f64) -> Result<Arc<dyn Heightfield>, String> {
+fn hills(scale_m: f64) -> Result<Arc<dyn Ground>, String> {
     bands(TurningBandsSettings {
         model: CovarianceModel::Bessel,
         scale_m,
@@ -73,7 +76,7 @@ fn hills(scale_m: f64) -> Result<Arc<dyn Heightfield>, String> {
 }
 
 /// Bumps a few metres wide.
-fn bumps() -> Result<Arc<dyn Heightfield>, String> {
+fn bumps() -> Result<Arc<dyn Ground>, String> {
     bands(TurningBandsSettings {
         model: CovarianceModel::Bessel,
         scale_m: 6.0,
@@ -84,6 +87,6 @@ fn bumps() -> Result<Arc<dyn Heightfield>, String> {
     })
 }
 
-fn bands(settings: TurningBandsSettings) -> Result<Arc<dyn Heightfield>, String> {
+fn bands(settings: TurningBandsSettings) -> Result<Arc<dyn Ground>, String> {
     Ok(Arc::new(TurningBands::new(&settings).map_err(|error| error.to_string())?))
 }

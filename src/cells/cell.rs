@@ -1,6 +1,9 @@
 //! What one cell holds.
 
-use crate::scatter::{GREATEST_SIZE, Ground, Planted, Planter};
+use crate::{
+    ground::Ground,
+    scatter::{GREATEST_SIZE, Planted, Planter},
+};
 use bevy::math::{DVec2, IVec2};
 
 /// The plants of one cell, packed. It can be made on any thread.

@@ -7,12 +7,13 @@ use super::{
 };
 use crate::{
     plugin_checks::has_renderer,
+    removal::remove_made,
     render::{RenderCapabilities, SwayBuffers},
     wind::WindClock,
 };
 use bevy::{
     asset::embedded_asset,
-    camera::visibility::NoAutoAabb,
+    camera::{primitives::Aabb, visibility::NoAutoAabb},
     light::{NotShadowCaster, NotShadowReceiver},
     pbr::MaterialPlugin,
     prelude::*,
@@ -33,10 +34,22 @@ impl Plugin for FireDrawPlugin {
             MaterialPlugin::<FireMaterial>::default(),
             MaterialPlugin::<ShelteredFireMaterial>::default(),
         ))
-        .add_observer(clear_hearth)
+        .register_type::<FireLight>()
+        .add_observer(remove_made::<Fire, FireLight, FireMesh>)
         .add_systems(Update, (show_fires, flicker_lights).chain().after(generate_flames).run_if(can_draw));
     }
 }
+
+/// What the entity of a fire is drawn with.
+type FireMesh = (
+    Mesh3d,
+    MeshMaterial3d<FireMaterial>,
+    MeshMaterial3d<ShelteredFireMaterial>,
+    Aabb,
+    NoAutoAabb,
+    NotShadowCaster,
+    NotShadowReceiver,
+);
 
 /// The light of a fire: a child of it, with a [`PointLight`] whose intensity flickers.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default)]
@@ -107,16 +120,26 @@ fn flicker_lights(
     }
 }
 
-fn clear_hearth(
-    removed: On<Remove<Fire>>,
-    mut commands: Commands,
-    children: Query<&Children>,
-    lights: Query<Entity, With<FireLight>>,
-) {
-    for light in children.iter_descendants(removed.entity).filter(|child| lights.contains(*child)) {
-        commands.entity(light).try_despawn();
-    }
-    if let Ok(mut fire) = commands.get_entity(removed.entity) {
-        fire.try_remove::<(Mesh3d, MeshMaterial3d<FireMaterial>, MeshMaterial3d<ShelteredFireMaterial>)>();
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fire_that_is_removed_takes_its_own_light_and_no_other() {
+        let mut world = World::new();
+        world.add_observer(remove_made::<Fire, FireLight, FireMesh>);
+        let burning = |world: &mut World| {
+            let fire = world.spawn((Fire::default(), NotShadowCaster)).id();
+            (fire, world.spawn((FireLight, ChildOf(fire))).id())
+        };
+        let ((fire, light), (torch, light_of_torch)) = (burning(&mut world), burning(&mut world));
+        world.entity_mut(torch).insert(ChildOf(fire));
+        let pot = world.spawn(ChildOf(fire)).id();
+        world.entity_mut(fire).remove::<Fire>();
+        world.flush();
+        assert!(world.get_entity(light).is_err(), "the light goes");
+        assert!(world.get::<NotShadowCaster>(fire).is_none(), "what the fire put on its entity goes");
+        assert!(world.get::<Fire>(torch).is_some() && world.get_entity(light_of_torch).is_ok(), "the torch burns on");
+        assert!(world.get_entity(pot).is_ok(), "what the game has put there stays");
     }
 }

@@ -1,12 +1,14 @@
 //! Begins forests from their plans.
 
 use super::{
-    cells::{ForestCells, SharedGround},
+    cells::ForestCells,
     components::{Forest, ForestGround, ForestSettings},
     cover::StandingGround,
 };
 use crate::{
-    scatter::{ForestPlan, LevelGround, Planter},
+    ground::{Ground, LevelGround},
+    scatter::{ForestPlan, Planter},
+    setting::valid_or_last,
     terrain::{Terrain, TerrainSettings},
 };
 use bevy::prelude::*;
@@ -43,15 +45,9 @@ pub(super) fn begin_forests(
                 continue;
             }
         };
-        let settings = match wanted.validate() {
-            Ok(()) => ForestSettings::clone(&wanted),
-            Err(error) => {
-                let last = before.as_ref().map_or_else(ForestSettings::default, |before| before.settings().clone());
-                warn!("forest settings: {error}; {last:?} are used");
-                last
-            }
-        };
-        let ground: SharedGround = match (own_ground, &terrain) {
+        let last = before.as_ref().map(|before| before.settings());
+        let settings = valid_or_last("forest settings", &*wanted, ForestSettings::validate, last);
+        let ground: Arc<dyn Ground> = match (own_ground, &terrain) {
             (Some(own), _) => own.0.clone(),
             (None, Some((terrain, settings))) => {
                 Arc::new(StandingGround::new(terrain.ground.clone(), settings.finest_cell_m))

@@ -3,7 +3,8 @@
 use super::{components::ForestSettings, near::NearTrees, reach::reaching};
 use crate::{
     cells::{Cell, CellStore, CellStream, Orders, StreamSettings, ViewerPose},
-    scatter::{Ground, Planter},
+    ground::Ground,
+    scatter::Planter,
     setting::SettingError,
     tree::Species,
     viewpoint::Viewpoints,
@@ -17,13 +18,11 @@ use std::sync::Arc;
 /// Cells that a task plants one after another: one alone takes less time than to start a task.
 const CELLS_PER_TASK: usize = 16;
 
-pub(super) type SharedGround = Arc<dyn Ground + Send + Sync>;
-
 /// A forest that grows: its plan made ready, and its cells about the viewers with every stem that stands there.
 #[derive(Component)]
 pub struct ForestCells {
     planter: Arc<Planter>,
-    ground: SharedGround,
+    ground: Arc<dyn Ground>,
     species: Vec<Handle<Species>>,
     /// Settings in force: the last that were valid.
     settings: ForestSettings,
@@ -38,7 +37,7 @@ pub struct ForestCells {
 impl ForestCells {
     pub(super) fn new(
         planter: Planter,
-        ground: SharedGround,
+        ground: Arc<dyn Ground>,
         species: Vec<Handle<Species>>,
         settings: ForestSettings,
         generation: u64,
@@ -106,7 +105,7 @@ impl ForestCells {
         self.planter.clone()
     }
 
-    pub(super) fn ground(&self) -> SharedGround {
+    pub(super) fn ground(&self) -> Arc<dyn Ground> {
         self.ground.clone()
     }
 

@@ -1,7 +1,8 @@
 //! Forests as entities.
 
 use crate::{
-    scatter::{ForestPlan, Ground},
+    ground::Ground,
+    scatter::ForestPlan,
     setting::{SettingError, require},
 };
 use bevy::prelude::*;
@@ -79,7 +80,7 @@ impl ForestSettings {
 
 /// Ground of your own for a [`Forest`], in place of the world's [`Terrain`](crate::terrain::Terrain).
 #[derive(Component, Clone)]
-pub struct ForestGround(pub Arc<dyn Ground + Send + Sync>);
+pub struct ForestGround(pub Arc<dyn Ground>);
 
 /// A cell of a [`Forest`] whose trees are entities: its children. A child of the forest.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]

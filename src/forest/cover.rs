@@ -1,32 +1,34 @@
 //! What forest and ground know of one another.
 
 use crate::{
-    scatter::{Ground, Planter},
-    terrain::{Cover, Heightfield, chunk::drawn_height_m},
+    ground::Ground,
+    scatter::Planter,
+    terrain::{Cover, chunk::drawn_height_m},
 };
 use bevy::math::DVec2;
 use std::sync::Arc;
 
 /// Ground as it is drawn at its finest, for stems to stand on.
 pub struct StandingGround {
-    ground: Arc<dyn Heightfield>,
+    ground: Arc<dyn Ground>,
     finest_cell_m: f64,
 }
 
 impl StandingGround {
     /// The ground of a terrain whose finest cells are so wide, m.
-    pub fn new(ground: Arc<dyn Heightfield>, finest_cell_m: f32) -> Self {
+    pub fn new(ground: Arc<dyn Ground>, finest_cell_m: f32) -> Self {
         Self { ground, finest_cell_m: f64::from(finest_cell_m) }
     }
 }
 
 impl Ground for StandingGround {
-    fn height_m(&self, x_m: f32, z_m: f32) -> f32 {
-        drawn_height_m(&self.ground, self.finest_cell_m, DVec2::new(f64::from(x_m), f64::from(z_m)))
+    fn height_m(&self, place: DVec2) -> f64 {
+        drawn_height_m(&self.ground, self.finest_cell_m, place).into()
     }
 
-    fn slope(&self, x_m: f32, z_m: f32) -> f32 {
-        self.ground.gradient(DVec2::new(f64::from(x_m), f64::from(z_m))).length() as f32
+    /// That of the ground itself: its triangles would have steps.
+    fn gradient(&self, place: DVec2) -> DVec2 {
+        self.ground.gradient(place)
     }
 }
 
@@ -42,7 +44,7 @@ const CROWN_M2: f32 = 30.0;
 
 impl PlanCover {
     /// The woods that `planter` plants on that ground.
-    pub fn new(planter: Planter, ground: Arc<dyn Heightfield>) -> Self {
+    pub fn new(planter: Planter, ground: Arc<dyn Ground>) -> Self {
         Self { planter, ground: StandingGround::new(ground, 1.0) }
     }
 }
@@ -75,7 +77,7 @@ mod tests {
     #[test]
     fn stems_stand_on_the_drawn_triangles() {
         struct Bowl;
-        impl Heightfield for Bowl {
+        impl Ground for Bowl {
             fn height_m(&self, place: DVec2) -> f64 {
                 0.01 * place.length_squared()
             }
@@ -85,7 +87,7 @@ mod tests {
         }
         let ground = StandingGround::new(Arc::new(Bowl), 4.0);
         // Half way along the side from (4, 0) to (8, 0).
-        assert!((ground.height_m(6.0, 0.0) - 0.01 * (16.0 + 64.0) / 2.0).abs() < 1e-6);
-        assert!((ground.slope(10.0, 0.0) - 0.2).abs() < 1e-6);
+        assert!((ground.height_m(DVec2::new(6.0, 0.0)) - 0.01 * (16.0 + 64.0) / 2.0).abs() < 1e-6);
+        assert!((ground.slope(DVec2::new(10.0, 0.0)) - 0.2).abs() < 1e-6);
     }
 }

@@ -22,7 +22,6 @@ mod diagnose;
 mod extent;
 #[cfg(feature = "render")]
 mod impostors;
-mod loader;
 mod near;
 mod near_services;
 mod plugin;
@@ -32,7 +31,6 @@ mod stream_trees;
 pub use cells::ForestCells;
 pub use components::{Forest, ForestCell, ForestGround, ForestSettings};
 pub use cover::{PlanCover, StandingGround};
-pub use loader::ForestLoadError;
 pub use plugin::ForestPlugin;
 #[cfg(feature = "render")]
 pub use {

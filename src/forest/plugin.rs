@@ -4,13 +4,13 @@ use super::{
     begin::begin_forests,
     cells::{ForestCells, plant_cells},
     components::{Forest, ForestCell, ForestSettings},
-    loader::ForestLoader,
     near_services::{articulate_near_trees, spawn_wind_cells},
     stream_trees::stream_trees,
 };
 use crate::{
     plugin_checks::{require_assets, require_plugin},
     removal::remove_made,
+    ron_loader::RonLoader,
     scatter::ForestPlan,
     schedule::{WindwoodSystems, configure_sets},
     timing::timed,
@@ -29,7 +29,7 @@ impl Plugin for ForestPlugin {
         configure_sets(app);
         give_cameras_viewpoints(app);
         app.init_asset::<ForestPlan>()
-            .init_asset_loader::<ForestLoader>()
+            .init_asset_loader::<RonLoader<ForestPlan>>()
             .register_asset_reflect::<ForestPlan>()
             .register_type::<Forest>()
             .register_type::<ForestSettings>()

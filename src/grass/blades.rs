@@ -14,7 +14,7 @@
 //! tuft, then a second of each, and so on. A blade's `rank` is its place in that order, from 0 to 1.
 
 use super::settings::Sward;
-use crate::sequence::r2;
+use crate::{ground::Ground, sequence::r2};
 use bevy::math::{Vec2, Vec3};
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::f32::consts::{FRAC_PI_2, TAU};
@@ -45,12 +45,12 @@ pub struct Blade {
     pub rank: f32,
 }
 
-/// The blades of a sward over ground whose height at the patch's (x, z) is `height_m`, in the order of their rank. Where the
-/// height is not a number, nothing grows.
+/// The blades of a sward over `ground` in the patch's coordinates, in the order of their rank. Where its height is not a number,
+/// nothing grows.
 ///
 /// `sward` must be valid. The same sward over the same ground gives the same blades, bit by bit.
-pub fn layout_blades(sward: &Sward, height_m: impl Fn(Vec2) -> f32) -> Vec<Blade> {
-    let tufts: Vec<Vec<Blade>> = (0..sward.tufts()).map(|tuft| layout_tuft(sward, tuft, &height_m)).collect();
+pub fn layout_blades(sward: &Sward, ground: &impl Ground) -> Vec<Blade> {
+    let tufts: Vec<Vec<Blade>> = (0..sward.tufts()).map(|tuft| layout_tuft(sward, tuft, ground)).collect();
     let mut blades: Vec<Blade> = (0..sward.tuft.blades as usize)
         .flat_map(|round| tufts.iter().filter_map(move |tuft| tuft.get(round)))
         .copied()
@@ -63,7 +63,7 @@ pub fn layout_blades(sward: &Sward, height_m: impl Fn(Vec2) -> f32) -> Vec<Blade
 }
 
 /// All blades of one tuft. Each tuft has random numbers of its own, so that none depends on how many there are before it.
-fn layout_tuft(sward: &Sward, number: u32, height_m: &impl Fn(Vec2) -> f32) -> Vec<Blade> {
+fn layout_tuft(sward: &Sward, number: u32, ground: &impl Ground) -> Vec<Blade> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(sward.seed ^ (u64::from(number) << 32));
     let tuft = &sward.tuft;
     let centre = tuft_centre(sward, number, &mut random);
@@ -76,7 +76,7 @@ fn layout_tuft(sward: &Sward, number: u32, height_m: &impl Fn(Vec2) -> f32) -> V
         let at = within(sward, at);
         let is_dry = between(0.0, 1.0) < sward.dry_share;
         Blade {
-            root: Vec3::new(at.x, height_m(at), at.y),
+            root: Vec3::new(at.x, ground.height_m(at.as_dvec2()) as f32, at.y),
             length_m: tuft.shortest_m + (tuft.longest_m - tuft.shortest_m) * between(0.0, 1.0).powf(exponent),
             width_m: between(tuft.narrowest_m, tuft.widest_m),
             azimuth_rad,
@@ -106,13 +106,15 @@ fn within(sward: &Sward, at: Vec2) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::{super::settings::Tuft, *};
+    use crate::ground::LevelGround;
+    use bevy::math::{DVec2, Vec3Swizzles};
 
     fn sward() -> Sward {
         Sward { width_m: 6.0, depth_m: 3.0, tufts_per_m2: 20.0, seed: 4, ..Sward::default() }
     }
 
     fn level(sward: &Sward) -> Vec<Blade> {
-        layout_blades(sward, |_| 0.0)
+        layout_blades(sward, &LevelGround(0.0))
     }
 
     #[test]
@@ -177,16 +179,16 @@ mod tests {
 
     #[test]
     fn blades_stand_on_the_ground() {
-        let slope = |at: Vec2| 0.3 * at.x - 0.1 * at.y;
-        for blade in layout_blades(&sward(), slope) {
-            assert_eq!(blade.root.y, slope(Vec2::new(blade.root.x, blade.root.z)));
+        let slope = |at: DVec2| 0.3 * at.x - 0.1 * at.y;
+        for blade in layout_blades(&sward(), &slope) {
+            assert_eq!(blade.root.y, slope(blade.root.as_dvec3().xz()) as f32);
         }
     }
 
     #[test]
     fn no_blade_stands_where_the_ground_has_no_height() {
-        let pond = |at: Vec2| if at.length() < 1.0 { f32::NAN } else { 0.0 };
-        let blades = layout_blades(&sward(), pond);
+        let pond = |at: DVec2| if at.length() < 1.0 { f64::NAN } else { 0.0 };
+        let blades = layout_blades(&sward(), &pond);
         assert!(blades.iter().all(|blade| Vec2::new(blade.root.x, blade.root.z).length() >= 1.0));
         // The pond takes pi of 18 square metres.
         let share = blades.len() as f32 / level(&sward()).len() as f32;

@@ -4,7 +4,10 @@ use super::{
     blades::{Blade, layout_blades},
     settings::{GrassLook, GrassResponse, Sward},
 };
-use crate::setting::SettingError;
+use crate::{
+    ground::{Ground, LevelGround},
+    setting::SettingError,
+};
 use bevy::{
     prelude::*,
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
@@ -39,11 +42,11 @@ impl GrassPatch {
     }
 }
 
-/// Uneven ground under a [`GrassPatch`]: the height, m, at the patch's own (x, z), both in the patch's coordinates. Heights
-/// are read once, when the blades are laid out; insert another `GrassGround` to have them laid out again. Where the height
-/// is not a number, nothing grows: ponds, paths, hearths. Called on a background thread.
+/// Uneven ground under a [`GrassPatch`], in the patch's own coordinates. Heights are read once, when the blades are laid out;
+/// insert another `GrassGround` to have them laid out again. Where the height is not a number, nothing grows: ponds, paths,
+/// hearths. Read on a background thread.
 #[derive(Component, Clone)]
-pub struct GrassGround(pub Arc<dyn Fn(Vec2) -> f32 + Send + Sync>);
+pub struct GrassGround(pub Arc<dyn Ground>);
 
 /// The blades of a patch. Written in [`WindwoodSystems::Bake`](crate::WindwoodSystems::Bake).
 #[derive(Component, Clone, Debug)]
@@ -82,11 +85,10 @@ pub(super) fn start_meadow_layouts(
                 .insert(Meadow { blades, patch: GrassPatch::clone(&patch) });
             continue;
         }
-        let (patch, ground) = (GrassPatch::clone(&patch), ground.map(|ground| ground.0.clone()));
-        let task = AsyncComputeTaskPool::get().spawn(async move {
-            let height_m = |at: Vec2| ground.as_ref().map_or(0.0, |ground| ground(at));
-            Meadow { blades: Arc::new(layout_blades(&patch.sward, height_m)), patch }
-        });
+        let patch = GrassPatch::clone(&patch);
+        let ground = ground.map_or_else(|| Arc::new(LevelGround::default()) as Arc<dyn Ground>, |own| own.0.clone());
+        let task = AsyncComputeTaskPool::get()
+            .spawn(async move { Meadow { blades: Arc::new(layout_blades(&patch.sward, &ground)), patch } });
         commands.entity(entity).insert(MeadowLayout(task));
     }
 }

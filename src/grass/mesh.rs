@@ -103,12 +103,13 @@ mod tests {
         super::{blades::layout_blades, components::GrassPatch, settings::Sward},
         *,
     };
+    use bevy::math::DVec2;
     use std::sync::Arc;
 
     fn meadow() -> Meadow {
         let sward = Sward { width_m: 2.0, depth_m: 2.0, ..Sward::default() };
         let patch = GrassPatch { sward, ..GrassPatch::default() };
-        Meadow { blades: Arc::new(layout_blades(&patch.sward, |at| at.x)), patch }
+        Meadow { blades: Arc::new(layout_blades(&patch.sward, &|at: DVec2| at.x)), patch }
     }
 
     #[test]

@@ -69,9 +69,10 @@ mod tests {
         super::{blades::layout_blades, settings::Sward},
         *,
     };
+    use crate::ground::LevelGround;
 
     fn meadow() -> Vec<Blade> {
-        layout_blades(&Sward { width_m: 3.0, depth_m: 3.0, ..Sward::default() }, |_| 0.0)
+        layout_blades(&Sward { width_m: 3.0, depth_m: 3.0, ..Sward::default() }, &LevelGround(0.0))
     }
 
     fn winds() -> impl Iterator<Item = Vec2> {

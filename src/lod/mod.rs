@@ -31,4 +31,6 @@ pub use paper::{
     polygons::{CrossedPolygons, crossed_polygons},
 };
 pub use screen_size::{Lens, LodScreenSizes};
+#[cfg(all(test, feature = "render"))]
+pub(crate) use settings::LEAST_LEAF_SHARE;
 pub use settings::{Decimation, EnvelopeSettings, ImpostorSettings, LodBakeSettings, MOST_LEVELS};

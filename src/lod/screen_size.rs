@@ -4,6 +4,7 @@
 //! picture of v pixels with a vertical field of view f. Solved for the distance this gives the distances at which levels
 //! end.
 
+use super::settings::MOST_LEVELS;
 use crate::setting::{SettingError, require};
 use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
@@ -40,6 +41,13 @@ pub struct Lens {
     pub picture_px: f32,
 }
 
+impl Default for Lens {
+    /// 45°, as Bevy's cameras have it, on a picture of 1080 pixels.
+    fn default() -> Self {
+        Self { fov_rad: std::f32::consts::FRAC_PI_4, picture_px: 1080.0 }
+    }
+}
+
 impl Lens {
     /// Pixels that a metre has in the picture, seen from a distance of one metre.
     #[must_use]
@@ -72,6 +80,12 @@ impl LodScreenSizes {
     pub fn distances_m(&self, tree_height_m: f32, lens: Lens) -> [f32; 2] {
         let pixels_at_1_m = tree_height_m * lens.picture_px / (2.0 * (0.5 * lens.fov_rad).tan());
         [self.high_px, self.medium_px].map(|px| (self.quality * pixels_at_1_m / px).max(0.0))
+    }
+
+    /// The same with a level between the two: it begins half way, as the eye sees distances.
+    pub fn distances_of_three_m(&self, tree_height_m: f32, lens: Lens) -> [f32; MOST_LEVELS] {
+        let [high, medium] = self.distances_m(tree_height_m, lens);
+        [high, (high * medium).sqrt(), medium]
     }
 }
 

@@ -8,6 +8,8 @@ use std::ops::RangeInclusive;
 /// The most levels of one tree that are meshes of its own: the grown tree and what it is decimated to.
 pub const MOST_LEVELS: usize = 3;
 const MOST_DECIMATIONS: usize = MOST_LEVELS - 1;
+/// Least share of the sprays that a decimated tree keeps.
+pub(crate) const LEAST_LEAF_SHARE: f32 = 0.2;
 
 /// All lower levels of a tree.
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
@@ -28,7 +30,8 @@ pub struct Decimation {
     /// Branches that are thinner at their root are left out, and all that grows on them. Radius, units: m, domain: 0 (none
     /// is) to 10.
     pub least_radius_m: f32,
-    /// Share of the sprays of leaves that stay, enlarged so that they have the area of all. domain: 0.02 to 1.
+    /// Share of the sprays of leaves that stay, enlarged so that they have the area of all. domain: 0.2 to 1: the bounds of trees have
+    /// room for no larger leaves.
     pub leaf_share: f32,
 }
 
@@ -133,7 +136,7 @@ impl LodBakeSettings {
 impl Decimation {
     fn validate(&self) -> Result<(), SettingError> {
         require("least_radius_m", self.least_radius_m, 0.0..=10.0)?;
-        require("leaf_share", self.leaf_share, 0.02..=1.0)
+        require("leaf_share", self.leaf_share, LEAST_LEAF_SHARE..=1.0)
     }
 }
 
@@ -192,7 +195,7 @@ mod tests {
         assert_eq!(error, "`envelope.frames` is 0, but must be 1 to 16");
         settings.decimations[1].leaf_share = 0.0;
         let error = settings.validate().unwrap_err().to_string();
-        assert_eq!(error, "`decimations[1].leaf_share` is 0, but must be 0.02 to 1");
+        assert_eq!(error, "`decimations[1].leaf_share` is 0, but must be 0.2 to 1");
         settings.decimations = vec![Decimation::default(); 3];
         let error = settings.validate().unwrap_err().to_string();
         assert_eq!(error, "`decimations` is 3 long, but must be at most 2 long");

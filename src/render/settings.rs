@@ -1,8 +1,8 @@
 //! Settings of level of detail.
 
 use crate::{
-    lod::LodScreenSizes,
-    setting::{SettingError, require},
+    lod::{LodBakeSettings, LodScreenSizes},
+    setting::{SettingError, require, valid_or_last},
 };
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -15,12 +15,14 @@ pub struct LevelOfDetail {
     /// What the levels are.
     pub style: LevelStyle,
     /// Where they end, and the quality in one number.
-    pub distances: LodScreenSizes,
+    pub screen_sizes: LodScreenSizes,
     /// Over this share of a distance, to either side, one level fades into the next. domain: \[0.02, 0.3\].
     pub fade: f32,
     /// Trees whose level changes in a frame, at most, and half as many that get their first; each takes some microseconds.
     /// domain: \[1, 1000000\].
     pub changes_per_frame: u32,
+    /// How lower levels are made. A change makes them all anew, in the background.
+    pub bake: LodBakeSettings,
 }
 
 /// What stands for a tree that is too small on screen to be drawn in full.
@@ -37,7 +39,13 @@ pub enum LevelStyle {
 
 impl Default for LevelOfDetail {
     fn default() -> Self {
-        Self { style: LevelStyle::default(), distances: LodScreenSizes::default(), fade: 0.1, changes_per_frame: 128 }
+        Self {
+            style: LevelStyle::default(),
+            screen_sizes: LodScreenSizes::default(),
+            fade: 0.1,
+            changes_per_frame: 128,
+            bake: LodBakeSettings::default(),
+        }
     }
 }
 
@@ -47,9 +55,10 @@ impl LevelOfDetail {
     /// # Errors
     /// The first field outside its domain.
     pub fn validate(&self) -> Result<(), SettingError> {
-        self.distances.validate().map_err(|error| error.inside("distances"))?;
+        self.screen_sizes.validate().map_err(|error| error.inside("screen_sizes"))?;
         require("fade", self.fade, 0.02..=0.3)?;
-        require("changes_per_frame", self.changes_per_frame as f32, 1.0..=1e6)
+        require("changes_per_frame", self.changes_per_frame as f32, 1.0..=1e6)?;
+        self.bake.validate().map_err(|error| error.inside("bake"))
     }
 }
 
@@ -62,23 +71,24 @@ pub(crate) fn apply_level_of_detail(wanted: Res<LevelOfDetail>, mut active: ResM
     if !wanted.is_changed() {
         return;
     }
-    match wanted.validate() {
-        Ok(()) => active.0 = wanted.clone(),
-        Err(error) => warn!("level of detail: {error}; {:?} stays", active.0),
-    }
+    active.0 = valid_or_last("level of detail", &*wanted, LevelOfDetail::validate, Some(&active.0));
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lod::ImpostorSettings;
 
     #[test]
     fn defaults_are_valid_and_errors_name_the_field() {
         LevelOfDetail::default().validate().unwrap();
         let error = LevelOfDetail { fade: 0.9, ..default() }.validate().unwrap_err().to_string();
         assert_eq!(error, "`fade` is 0.9, but must be 0.02 to 0.3");
-        let distances = LodScreenSizes { quality: 0.0, ..default() };
-        let error = LevelOfDetail { distances, ..default() }.validate().unwrap_err().to_string();
-        assert!(error.starts_with("`distances.quality` is 0"), "{error}");
+        let screen_sizes = LodScreenSizes { quality: 0.0, ..default() };
+        let error = LevelOfDetail { screen_sizes, ..default() }.validate().unwrap_err().to_string();
+        assert!(error.starts_with("`screen_sizes.quality` is 0"), "{error}");
+        let bake = LodBakeSettings { impostor: ImpostorSettings { rays: 9, ..default() }, ..default() };
+        let error = LevelOfDetail { bake, ..default() }.validate().unwrap_err().to_string();
+        assert_eq!(error, "`bake.impostor.rays` is 9, but must be 1 to 4");
     }
 }

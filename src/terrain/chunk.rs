@@ -8,10 +8,8 @@
 //! [`COARSEST_NEIGHBOUR`]: together they fill whatever opens between the two edges. Which of them are shown depends on
 //! the neighbours of the moment; [`Seams`] tells the vertex shader, and the mesh stays as it is.
 
-use super::{
-    chunk_key::SIDE,
-    heightfield::{Cover, Heightfield},
-};
+use super::{chunk_key::SIDE, cover::Cover};
+use crate::ground::Ground;
 use bevy::math::{DVec2, Vec3};
 
 pub use super::chunk_key::{CHUNK_CELLS, COARSEST_NEIGHBOUR, ChunkKey, Edge, Seams};
@@ -35,10 +33,10 @@ pub struct ChunkVertices {
     pub highest_m: f32,
 }
 
-/// The ground of a chunk.
+/// The ground of a chunk. Where an elevation is not a finite number, 0 is drawn.
 #[must_use]
 pub fn chunk_vertices(
-    ground: &impl Heightfield,
+    ground: &impl Ground,
     cover: Option<&dyn Cover>,
     key: ChunkKey,
     finest_cell_m: f64,
@@ -102,14 +100,15 @@ struct Lattice {
 impl Lattice {
     const SIDE: usize = SIDE + 2;
 
-    fn new(ground: &impl Heightfield, key: ChunkKey, finest_cell_m: f64) -> Self {
+    fn new(ground: &impl Ground, key: ChunkKey, finest_cell_m: f64) -> Self {
         let cell_m = finest_cell_m * f64::from(1_u32 << key.level);
         let corner_m = key.corner_m(finest_cell_m);
         let place = |index: usize| {
             let step = DVec2::new((index % Self::SIDE) as f64, (index / Self::SIDE) as f64) - 1.0;
             corner_m + step * cell_m
         };
-        let heights_m = (0..Self::SIDE * Self::SIDE).map(|index| ground.height_m(place(index)) as f32).collect();
+        let drawn_m = |height_m: f64| if height_m.is_finite() { height_m as f32 } else { 0.0 };
+        let heights_m = (0..Self::SIDE * Self::SIDE).map(|index| drawn_m(ground.height_m(place(index)))).collect();
         Self { heights_m, corner_m, cell_m }
     }
 
@@ -134,7 +133,7 @@ impl Lattice {
 /// Elevation of the ground as it is drawn at the finest level, m: on the triangles of its lattice. Stems that stand on it
 /// neither float nor sink.
 #[must_use]
-pub fn drawn_height_m(ground: &impl Heightfield, finest_cell_m: f64, place: DVec2) -> f32 {
+pub fn drawn_height_m(ground: &impl Ground, finest_cell_m: f64, place: DVec2) -> f32 {
     let cells = place / finest_cell_m;
     let first = cells.floor();
     let [u, v] = (cells - first).as_vec2().to_array();
@@ -204,18 +203,18 @@ mod tests {
 
     #[test]
     fn normals_follow_the_slope() {
-        struct Ramp;
-        impl Heightfield for Ramp {
-            fn height_m(&self, place: DVec2) -> f64 {
-                0.5 * place.x
-            }
-            fn gradient(&self, _: DVec2) -> DVec2 {
-                DVec2::new(0.5, 0.0)
-            }
-        }
-        let chunk = chunk_vertices(&Ramp, None, ChunkKey { level: 3, column: 0, row: 0 }, CELL_M);
-        let expected = Ramp.normal(DVec2::ZERO);
+        let ramp = |place: DVec2| 0.5 * place.x;
+        let chunk = chunk_vertices(&ramp, None, ChunkKey { level: 3, column: 0, row: 0 }, CELL_M);
+        let expected = Vec3::new(-0.5, 1.0, 0.0).normalize();
         assert!(chunk.normals.iter().all(|normal| Vec3::from_array(*normal).distance(expected) < 1e-5));
         assert_eq!((chunk.lowest_m, chunk.highest_m), (0.0, 256.0));
+    }
+
+    #[test]
+    fn holes_in_the_ground_are_drawn_at_zero() {
+        let pond = |place: DVec2| if place.length() < 20.0 { f64::NAN } else { 7.0 };
+        let chunk = chunk_vertices(&pond, None, ChunkKey { level: 0, column: 0, row: 0 }, CELL_M);
+        assert_eq!((chunk.lowest_m, chunk.highest_m), (0.0, 7.0));
+        assert!(chunk.positions.iter().chain(&chunk.normals).flatten().all(|value| value.is_finite()));
     }
 }

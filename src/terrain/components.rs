@@ -1,11 +1,10 @@
 //! Ground as an entity.
 
-use super::{
-    chunk_key::CHUNK_CELLS,
-    heightfield::{Cover, Heightfield},
-    pyramid::PyramidShape,
+use super::{chunk_key::CHUNK_CELLS, cover::Cover, pyramid::PyramidShape};
+use crate::{
+    ground::Ground,
+    setting::{SettingError, require},
 };
-use crate::setting::{SettingError, require};
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -17,14 +16,14 @@ use std::sync::Arc;
 #[require(TerrainSettings, GroundLook, Transform, Visibility)]
 pub struct Terrain {
     /// Its elevations, m.
-    pub ground: Arc<dyn Heightfield>,
+    pub ground: Arc<dyn Ground>,
     /// The woods on it, which colour it where trees are too far to be drawn.
     pub cover: Option<Arc<dyn Cover>>,
 }
 
 impl Terrain {
     /// Bare ground.
-    pub fn new(ground: impl Heightfield + 'static) -> Self {
+    pub fn new(ground: impl Ground + 'static) -> Self {
         Self { ground: Arc::new(ground), cover: None }
     }
 

@@ -1,7 +1,10 @@
 //! Elevations on a regular grid: what maps are read from, and what variograms are estimated from.
 
-use super::{error::TerrainError, heightfield::Heightfield};
-use crate::setting::{SettingError, require};
+use super::error::TerrainError;
+use crate::{
+    ground::Ground,
+    setting::{SettingError, require},
+};
 use bevy::math::DVec2;
 use std::ops::RangeInclusive;
 
@@ -50,7 +53,7 @@ impl ElevationGrid {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn sample(
-        ground: &dyn Heightfield,
+        ground: &dyn Ground,
         first: DVec2,
         columns: u32,
         rows: u32,

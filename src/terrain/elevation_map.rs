@@ -8,11 +8,9 @@
 //! Beyond the edge the outermost samples go on for ever, so that the ground runs out level within one cell, without a
 //! kink.
 
-use super::{
-    elevation_grid::ElevationGrid,
-    heightfield::{Heightfield, finite},
-};
+use super::{elevation_grid::ElevationGrid, place::finite};
 use crate::{
+    ground::Ground,
     interpolation::catmull_rom,
     setting::{SettingError, require},
 };
@@ -91,7 +89,7 @@ impl ElevationMap {
     }
 }
 
-impl Heightfield for ElevationMap {
+impl Ground for ElevationMap {
     fn height_m(&self, place: DVec2) -> f64 {
         let (x, z) = self.positions(place);
         match self.placement.interpolation {

@@ -9,12 +9,13 @@
 //! 3. A [`Variogram`] measures the covariance of a real map ([`ElevationGrid`]), and [`fit_models`] finds the models
 //!    that have it (Levenberg-Marquardt), so that new ground of the same kind can be made ([`Fit::settings`]).
 //! 4. [`ElevationMap`] is the real ground itself, [`SplineGround`] ground formed by control points, [`Layers`] the sum
-//!    of several. All are [`Heightfield`]s.
+//!    of several. All are [`Ground`](crate::Ground).
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! use bevy_windwood::terrain::{
-//!     CovarianceModel, ElevationGrid, ElevationScale, Heightfield, TurningBands, Variogram, VariogramSettings, fit_models,
+//! use bevy_windwood::{
+//!     Ground,
+//!     terrain::{CovarianceModel, ElevationGrid, ElevationScale, TurningBands, Variogram, VariogramSettings, fit_models},
 //! };
 //!
 //! let scale = ElevationScale { cell_x_m: 233.0, cell_z_m: 234.0, ..Default::default() };
@@ -33,12 +34,12 @@
 //! | files | what |
 //! |---|---|
 //! | `error` | What can be wrong with settings, maps and files. |
-//! | `heightfield` | What all ground has: a height, a normal and a slope anywhere. |
+//! | `place` | Places that may be asked about. |
 //! | `covariance`, `bessel_integrals`, `spectral_sampling`, `line_process`, `turning_bands`, `settings` | Random fields. |
 //! | `elevation_file`, `elevation_grid`, `elevation_map` | Maps: read, held, interpolated. |
 //! | `drift`, `autocorrelation`, `variogram`, `fit` | Estimates from maps. |
-//! | `spline_ground` | Ground formed by control points. |
-//! | `chunk_key`, `chunk`, `pyramid`, `ground_texture` | What is drawn of it. |
+//! | `spline_ground`, `layers` | Ground formed by control points; sums of grounds. |
+//! | `chunk_key`, `chunk`, `pyramid`, `cover`, `ground_texture` | What is drawn of it. |
 //! | `components`, `ecs`, `material`, `plugin` | Ground as entities. All others are plain arithmetic without an app. |
 
 mod autocorrelation;
@@ -47,6 +48,7 @@ pub mod chunk;
 mod chunk_key;
 mod components;
 mod covariance;
+mod cover;
 mod drift;
 #[cfg(feature = "render")]
 mod ecs;
@@ -57,10 +59,11 @@ mod error;
 mod fit;
 #[cfg(feature = "render")]
 mod ground_texture;
-mod heightfield;
+mod layers;
 mod line_process;
 #[cfg(feature = "render")]
 mod material;
+mod place;
 #[cfg(feature = "render")]
 mod plugin;
 pub mod pyramid;
@@ -72,13 +75,14 @@ mod variogram;
 
 pub use components::{GroundLook, Terrain, TerrainSettings};
 pub use covariance::CovarianceModel;
+pub use cover::Cover;
 pub use drift::{Drift, FoundDrift};
 pub use elevation_file::{ElevationScale, RawSample};
 pub use elevation_grid::ElevationGrid;
 pub use elevation_map::{ElevationMap, Interpolation, MapPlacement};
 pub use error::TerrainError;
 pub use fit::{Fit, fit_model, fit_models};
-pub use heightfield::{Cover, Heightfield, Layers};
+pub use layers::Layers;
 pub use settings::{Anisotropy, TurningBandsSettings};
 pub use spline_ground::{SplineGround, SplineGroundSettings, SplinePatch};
 pub use turning_bands::TurningBands;

@@ -11,11 +11,8 @@
 //! and where they end. (Zaharia enters 50 points for 5 adjacent patches; here they are as many as wanted.) A control
 //! point draws the surface towards itself, which reaches it only where its neighbours agree with it.
 
-use super::{
-    error::TerrainError,
-    heightfield::{Heightfield, finite},
-};
-use crate::setting::require;
+use super::{error::TerrainError, place::finite};
+use crate::{ground::Ground, setting::require};
 use bevy::{math::DVec2, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
@@ -182,7 +179,7 @@ impl SplineGround {
     }
 }
 
-impl Heightfield for SplineGround {
+impl Ground for SplineGround {
     fn height_m(&self, place: DVec2) -> f64 {
         let (x, z) = self.positions(place);
         f64::from(self.settings.base_m) + self.weighted_m((&x, x.weights()), (&z, z.weights()))

@@ -11,12 +11,12 @@
 //! in coordinates that are stretched across its axis.
 
 use super::{
-    heightfield::{Heightfield, finite},
     line_process::{Harmonic, LineProcess},
+    place::finite,
     settings::{PERIOD_SCALES, SAMPLES_PER_WAVELENGTH, TurningBandsSettings},
     spectral_sampling::{SpectralInterval, spectral_intervals},
 };
-use crate::setting::SettingError;
+use crate::{ground::Ground, setting::SettingError};
 use bevy::math::DVec2;
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use rustfft::FftPlanner;
@@ -66,14 +66,14 @@ impl TurningBands {
     }
 
     /// Elevation at a place by the sums of equation 3 themselves, m: the slow oracle of
-    /// [`height_m`](Heightfield::height_m).
+    /// [`height_m`](Ground::height_m).
     pub fn exact_height_m(&self, place: DVec2) -> f64 {
         let place = finite(place);
         let value = |line: &Line| line.process.exact(place.dot(line.step)).value;
         self.settings.mean_m + self.lines.iter().map(value).sum::<f64>()
     }
 
-    /// Gradient at a place by the sums themselves: the slow oracle of [`gradient`](Heightfield::gradient).
+    /// Gradient at a place by the sums themselves: the slow oracle of [`gradient`](Ground::gradient).
     pub fn exact_gradient(&self, place: DVec2) -> DVec2 {
         let place = finite(place);
         self.lines.iter().map(|line| line.step * line.process.exact(place.dot(line.step)).derivative).sum()
@@ -101,7 +101,7 @@ impl TurningBands {
     }
 }
 
-impl Heightfield for TurningBands {
+impl Ground for TurningBands {
     fn height_m(&self, place: DVec2) -> f64 {
         let place = finite(place);
         let sum: f32 = self.lines.iter().map(|line| line.process.value(place.dot(line.step))).sum();

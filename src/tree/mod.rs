@@ -5,7 +5,7 @@
 //!
 //! | stage | input -> output | file |
 //! |---|---|---|
-//! | load | `*.species.ron` -> [`Species`], checked field by field | `loader.rs`, [`species`] |
+//! | load | `*.species.ron` -> [`Species`], checked field by field | [`species`] |
 //! | pick an age | age in years -> [`Stage`](growth::age::Stage), the shares of the mature sizes | [`growth::age`] |
 //! | grow branches | [`Growth`] settings, stage, seed -> beams, parents first | `generator.rs` chooses one of [`growth::reeves_blau`], [`growth::zaharia`], [`growth::aono_kunii`]; they share `growth/grower.rs` and `growth/stems.rs`, [`growth::trunk`], [`growth::envelope`] and [`growth::phyllotaxis`] |
 //! | or grow a crown | crown settings -> a whole skeleton with polygons or ellipsoids for leaves | [`crown::impressionist`], [`crown::gardner`] |
@@ -39,7 +39,6 @@ pub mod individual;
 mod joint;
 pub mod leaf;
 mod leaf_mesh;
-mod loader;
 pub mod mechanics;
 mod model;
 pub mod phenology;
@@ -60,7 +59,6 @@ pub use ecs::{
     species_models::{BakedSpecies, BakedStage, SpeciesBaked, SpeciesModels, bake_variants},
 };
 pub use generator::Growth;
-pub use loader::SpeciesLoadError;
 pub use model::TreeModel;
 pub use plugin::TreePlugin;
 pub use species::{Species, SpeciesError};

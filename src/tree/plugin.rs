@@ -1,4 +1,4 @@
-//! Registers trees: the species asset and its loader, the baked models, the components.
+//! Registers trees: the species asset, the baked models, the components.
 
 use super::{
     components::{Articulated, Beam, Leaf, Tree},
@@ -8,12 +8,12 @@ use super::{
         season::Season,
         species_models::{SpeciesBaked, SpeciesModels, store_baked_models, update_species},
     },
-    loader::SpeciesLoader,
     model::TreeModel,
     species::Species,
 };
 use crate::{
     plugin_checks::require_assets,
+    ron_loader::RonLoader,
     schedule::{WindwoodSystems, configure_sets},
     timing::timed,
 };
@@ -28,7 +28,7 @@ impl Plugin for TreePlugin {
         configure_sets(app);
         app.init_asset::<Species>()
             .init_asset::<TreeModel>()
-            .init_asset_loader::<SpeciesLoader>()
+            .init_asset_loader::<RonLoader<Species>>()
             .register_asset_reflect::<Species>()
             .register_type::<Tree>()
             .register_type::<Articulated>()

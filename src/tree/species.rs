@@ -17,6 +17,7 @@ use super::{
     phenology::Phenology,
 };
 use crate::{
+    ron_loader::RonAsset,
     ron_text::{SyntaxError, from_ron},
     setting::{SettingError, require},
 };
@@ -118,6 +119,16 @@ impl Species {
         self.wood.validate().map_err(|error| error.inside("wood"))?;
         self.foliage.validate().map_err(|error| error.inside("foliage"))?;
         self.phenology.validate().map_err(|error| error.inside("phenology"))
+    }
+}
+
+impl RonAsset for Species {
+    type Error = SpeciesError;
+
+    const EXTENSIONS: &'static [&'static str] = &["species.ron"];
+
+    fn read(text: &str) -> Result<Self, SpeciesError> {
+        Self::from_ron(text)
     }
 }
 

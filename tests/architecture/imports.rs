@@ -1,6 +1,6 @@
 //! Reads `use` declarations and paths out of Rust source, without a parser of the whole language.
 
-use std::{iter::Peekable, str::CharIndices};
+use super::tokens::{Token, tokens};
 
 /// One name that a `use` declaration brings in.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,100 +26,7 @@ pub struct Code {
     pub paths: Vec<Vec<String>>,
 }
 
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum Token {
-    Word(String),
-    /// `::`
-    Colons,
-    Sign(char),
-}
-
 const ITEM_KEYWORDS: [&str; 9] = ["fn", "struct", "enum", "union", "trait", "type", "const", "static", "mod"];
-
-/// Splits source into words and signs. Comments, strings, characters and lifetimes are left out.
-fn tokens(text: &str) -> Vec<Token> {
-    let mut tokens = Vec::new();
-    let mut chars = text.char_indices().peekable();
-    while let Some((at, c)) = chars.next() {
-        let next = chars.peek().map(|&(_, c)| c);
-        match c {
-            '/' if next == Some('/') => while chars.next_if(|&(_, c)| c != '\n').is_some() {},
-            '/' if next == Some('*') => skip_block_comment(&mut chars),
-            '"' => skip_string(&mut chars),
-            'r' | 'b' | 'c' if raw_string(&text[at..]).is_some() => {
-                let length = raw_string(&text[at..]).unwrap_or(0);
-                while chars.next_if(|&(next, _)| next < at + length).is_some() {}
-            }
-            '\'' => skip_character_or_lifetime(text, at, &mut chars),
-            ':' if next == Some(':') => {
-                chars.next();
-                tokens.push(Token::Colons);
-            }
-            _ if c.is_alphanumeric() || c == '_' => {
-                let mut end = at + c.len_utf8();
-                while let Some((next, c)) = chars.next_if(|&(_, c)| c.is_alphanumeric() || c == '_') {
-                    end = next + c.len_utf8();
-                }
-                tokens.push(Token::Word(text[at..end].into()));
-            }
-            _ if c.is_whitespace() => {}
-            _ => tokens.push(Token::Sign(c)),
-        }
-    }
-    tokens
-}
-
-fn skip_block_comment(chars: &mut Peekable<CharIndices>) {
-    chars.next();
-    let (mut depth, mut before) = (1, ' ');
-    for (_, c) in chars.by_ref() {
-        match (before, c) {
-            ('/', '*') => depth += 1,
-            ('*', '/') => depth -= 1,
-            _ => {
-                before = c;
-                continue;
-            }
-        }
-        before = ' ';
-        if depth == 0 {
-            return;
-        }
-    }
-}
-
-fn skip_string(chars: &mut Peekable<CharIndices>) {
-    while let Some((_, c)) = chars.next() {
-        match c {
-            '\\' => drop(chars.next()),
-            '"' => return,
-            _ => {}
-        }
-    }
-}
-
-/// Length of the raw or byte string that `text` starts with.
-fn raw_string(text: &str) -> Option<usize> {
-    let prefix = ["br", "cr", "r"].into_iter().find(|prefix| text.starts_with(prefix))?;
-    let rest = &text[prefix.len()..];
-    let hashes = rest.len() - rest.trim_start_matches('#').len();
-    let body = rest[hashes..].strip_prefix('"')?;
-    let end = body.find(&format!("\"{}", "#".repeat(hashes)))?;
-    Some(prefix.len() + hashes + 1 + end + 1 + hashes)
-}
-
-fn skip_character_or_lifetime(text: &str, at: usize, chars: &mut Peekable<CharIndices>) {
-    let mut following = text[at + 1..].chars();
-    match (following.next(), following.next()) {
-        (Some('\\'), _) => {
-            chars.next();
-            chars.next();
-            while chars.next().is_some_and(|(_, c)| c != '\'') {}
-        }
-        (Some(_), Some('\'')) => drop((chars.next(), chars.next())),
-        _ => while chars.next_if(|&(_, c)| c.is_alphanumeric() || c == '_').is_some() {},
-    }
-}
 
 struct Reader {
     tokens: Vec<Token>,
@@ -361,21 +268,6 @@ mod tests {
         let found = ["crate::dynamics::a", "crate::dynamics::b", "crate::dynamics::b::C", "crate::wind::*", "std::fmt"];
         assert_eq!(paths(text), found);
         assert_eq!(read(text).imports[2].name, "D");
-    }
-
-    #[test]
-    fn comments_strings_and_lifetimes_hide_no_code_and_show_none() {
-        let text = r##"
-            // use crate::a;
-            /* use crate::b; /* nested */ use crate::c; */
-            const TEXT: &str = "use crate::d; \" // ";
-            const RAW: &str = r#"use crate::e; " "#;
-            const QUOTE: char = '"';
-            fn f<'a>(x: &'a str) -> char { '\'' }
-            use crate::g;
-        "##;
-        assert_eq!(paths(text), ["crate::g"]);
-        assert_eq!(read(text).items, ["TEXT", "RAW", "QUOTE", "f"]);
     }
 
     #[test]

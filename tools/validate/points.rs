@@ -8,13 +8,16 @@ mod forest_plans;
 
 use crate::report::Report;
 use bevy::math::{DVec2, IVec2};
-use bevy_windwood::scatter::{
-    ForestPlan, LevelGround, Planter,
-    counts::{
-        CountKind, CountModel, Frequencies, by_likelihood, by_moments, characterise, dispersion, goodness_of_fit,
+use bevy_windwood::{
+    LevelGround,
+    scatter::{
+        ForestPlan, Planter,
+        counts::{
+            CountKind, CountModel, Frequencies, by_likelihood, by_moments, characterise, dispersion, goodness_of_fit,
+        },
+        plan::{Area, Shape},
+        quadrat::{QuadratGrid, draw_counts, exact_counts, place_points},
     },
-    plan::{Area, Shape},
-    quadrat::{QuadratGrid, draw_counts, exact_counts, place_points},
 };
 use forest_plans::{shipped, shipped_with_many_areas};
 use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};

@@ -5,9 +5,12 @@
 
 use crate::report::Report;
 use bevy::math::DVec2;
-use bevy_windwood::terrain::{
-    Anisotropy, CovarianceModel, ElevationGrid, ElevationScale, Heightfield, TurningBands, TurningBandsSettings,
-    Variogram, VariogramSettings, fit_model, fit_models,
+use bevy_windwood::{
+    Ground,
+    terrain::{
+        Anisotropy, CovarianceModel, ElevationGrid, ElevationScale, TurningBands, TurningBandsSettings, Variogram,
+        VariogramSettings, fit_model, fit_models,
+    },
 };
 use std::{thread, time::Instant};
 

@@ -2,7 +2,7 @@
 
 use crate::{
     forest::cells::ForestCells,
-    lod::{ImpostorAtlas, ImpostorSway, LodBakeSettings, Scene},
+    lod::{ImpostorAtlas, ImpostorSettings, ImpostorSway, Scene},
     render::{
         RenderCapabilities, SwayBuffers,
         impostors::{
@@ -11,6 +11,7 @@ use crate::{
             near_mask::NearMask,
         },
         lighting::{LitAsTrees, TreeLights},
+        settings::ActiveLevelOfDetail,
     },
     tree::{Species, TreeModel, bake_variants, growth::age::Age, textures::species_textures},
 };
@@ -25,6 +26,8 @@ use bevy::{
 pub(super) struct ImpostorSpeciesLibrary {
     species: HashMap<AssetId<Species>, ImpostorSpecies>,
     baking: Vec<(AssetId<Species>, Task<Baked>)>,
+    /// What they are baked with.
+    settings: ImpostorSettings,
 }
 
 /// The impostors of a species.
@@ -60,23 +63,35 @@ impl ImpostorSpeciesLibrary {
     }
 
     fn bake(&mut self, id: AssetId<Species>, species: &Species) {
-        let species = species.clone();
+        let (species, settings) = (species.clone(), self.settings);
         self.baking.retain(|(other, _)| *other != id);
-        self.baking.push((id, AsyncComputeTaskPool::get().spawn(async move { bake(species) })));
+        self.baking.push((id, AsyncComputeTaskPool::get().spawn(async move { bake(species, &settings) })));
+    }
+
+    /// Takes settings over. Returns the species that have to be baked anew with them.
+    fn set(&mut self, settings: ImpostorSettings) -> Vec<AssetId<Species>> {
+        if std::mem::replace(&mut self.settings, settings) == settings {
+            return Vec::new();
+        }
+        let baking = self.baking.iter().map(|(id, _)| *id);
+        let mut known: Vec<AssetId<Species>> = self.species.keys().copied().chain(baking).collect();
+        known.sort_unstable();
+        known.dedup();
+        known
     }
 }
 
-fn bake(species: Species) -> Baked {
+fn bake(species: Species, settings: &ImpostorSettings) -> Baked {
     let textures = species_textures(&species);
     let models: Vec<TreeModel> =
         bake_variants(&species, species.age.mature_years).take(MAX_VARIANTS as usize).collect();
     let scenes: Vec<Scene> = models.iter().map(|model| Scene::new(&species, model, &textures)).collect();
-    let atlas = ImpostorAtlas::bake(&scenes, &LodBakeSettings::default().impostor);
+    let atlas = ImpostorAtlas::bake(&scenes, settings);
     let leans = scenes.iter().zip(&models).map(|(scene, model)| ImpostorSway::of(scene, model)).collect();
     Baked { atlas: AtlasImages::new(&atlas, leans, textures.foliage_colour()), species }
 }
 
-/// Starts baking the atlas of species that have come or were changed, and takes over those that are baked.
+/// Starts baking the atlas of species that have come or were changed, and of all if the settings were; takes over those that are baked.
 pub(super) fn bake_impostor_species(
     mut library: ResMut<ImpostorSpeciesLibrary>,
     mut images: ResMut<Assets<Image>>,
@@ -86,12 +101,18 @@ pub(super) fn bake_impostor_species(
     capabilities: Res<RenderCapabilities>,
     lights: Res<TreeLights>,
     near_mask: Res<NearMask>,
+    detail: Res<ActiveLevelOfDetail>,
     species: Res<Assets<Species>>,
     forests: Query<&ForestCells>,
 ) {
     if !capabilities.sways {
         // Without storage buffers not even the layout of their material can be made.
         return;
+    }
+    for id in library.set(detail.0.bake.impostor) {
+        if let Some(species) = species.get(id).filter(|species| species.validate().is_ok()) {
+            library.bake(id, species);
+        }
     }
     for event in events.read() {
         match event {
@@ -112,7 +133,7 @@ pub(super) fn bake_impostor_species(
             library.bake(id, species);
         }
     }
-    let ImpostorSpeciesLibrary { species: baked, baking } = &mut *library;
+    let ImpostorSpeciesLibrary { species: baked, baking, .. } = &mut *library;
     baking.retain_mut(|(id, task)| {
         let Some(Baked { species, atlas }) = block_on(poll_once(task)) else { return true };
         let (frame, shown_variants) = (atlas.frame, atlas.variants);
@@ -145,7 +166,7 @@ mod tests {
         let textures = species_textures(&species);
         let model = TreeModel::bake(&species, 3.0, 1);
         let scenes: Vec<Scene> = (0..MAX_VARIANTS).map(|_| Scene::new(&species, &model, &textures)).collect();
-        let atlas = ImpostorAtlas::bake(&scenes, &LodBakeSettings::default().impostor);
+        let atlas = ImpostorAtlas::bake(&scenes, &ImpostorSettings::default());
         assert!(atlas.has_bare, "it sheds its leaves: most views that there are");
         // `maxTextureDimension2D` of WebGPU.
         assert!(atlas.coverage.width.max(atlas.coverage.height) <= 8192, "{:?}", atlas.coverage.height);

@@ -6,7 +6,12 @@
 //! shader no picture was there after two minutes, this way one (of two or three frames) after 19 s.
 
 use crate::render::{
-    buffers::sway_buffers::SwayBuffers, capabilities::can_read_tables, instances::workgroups::WORKGROUP_SIZE,
+    buffers::sway_buffers::SwayBuffers,
+    capabilities::can_read_tables,
+    instances::{
+        tag::{ROW_BITS, ROW_BITS_CONSTANT},
+        workgroups::WORKGROUP_SIZE,
+    },
 };
 use bevy::{
     core_pipeline::schedule::camera_driver,
@@ -103,6 +108,7 @@ fn queue_pipelines(mut commands: Commands, assets: Res<AssetServer>, cache: Res<
             // Materials and this shader import the same tables; here they are in the only group.
             shader_defs: vec![
                 ShaderDefVal::UInt("MATERIAL_BIND_GROUP".into(), 0),
+                ShaderDefVal::UInt(ROW_BITS_CONSTANT.into(), ROW_BITS),
                 ShaderDefVal::UInt("POSE_WORKGROUP_SIZE".into(), WORKGROUP_SIZE),
                 ShaderDefVal::UInt("POSE_WORKGROUPS_ACROSS".into(), WORKGROUPS_ACROSS),
             ],

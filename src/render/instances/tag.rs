@@ -1,7 +1,7 @@
 //! The mesh tag of a tree's draw: the tree's row, the LOD level, how that level fades, and a tint.
 
-/// Bits of the row.
-const ROW_BITS: u32 = 16;
+/// Bits of the row, here and in the list of the pose pass.
+pub(crate) const ROW_BITS: u32 = 16;
 /// The level has two bits after the row.
 const LOD_SHIFT: u32 = ROW_BITS;
 const FADES_OUT_BIT: u32 = 18;
@@ -12,9 +12,12 @@ const TINT_SHIFT: u32 = 24;
 /// Rows that a tag can name.
 pub(crate) const MAX_ROWS: u32 = (1 << ROW_BITS) - 1;
 
+/// What shaders call the number of bits of a row.
+pub(crate) const ROW_BITS_CONSTANT: &str = "TREE_ROW_BITS";
+
 /// The layout as constants of the shaders.
 pub(crate) const TAG_LAYOUT: [(&str, u32); 5] = [
-    ("TAG_ROW_BITS", ROW_BITS),
+    (ROW_BITS_CONSTANT, ROW_BITS),
     ("TAG_FADES_OUT_BIT", FADES_OUT_BIT),
     ("TAG_FADES_IN_BIT", FADES_IN_BIT),
     ("TAG_FADES_TO_IMPOSTOR_BIT", FADES_TO_IMPOSTOR_BIT),

@@ -1,5 +1,6 @@
 //! The workgroups of the pose pass: each poses a run of 64 beams of one tree.
 
+use super::tag::ROW_BITS;
 use crate::render::buffers::dirty_table::DirtyTable;
 
 /// Beams that a workgroup poses.
@@ -18,9 +19,9 @@ pub(crate) struct PoseWorkgroups {
     unused: u32,
 }
 
-/// The entry of the run of beams from `64 run` on of a row's tree, as the shader reads it: the row in the low half.
+/// The entry of the run of beams from `64 run` on of a row's tree, as the shader reads it: the row in the low bits.
 fn entry(row: u32, run: u32) -> u32 {
-    row | run << 16
+    row | run << ROW_BITS
 }
 
 impl PoseWorkgroups {
@@ -53,7 +54,7 @@ impl PoseWorkgroups {
         let mut end = 0;
         for place in 0..self.table.len() {
             let Some(&used) = self.table.get(place).filter(|entry| **entry != UNUSED) else { continue };
-            let row = used & 0xffff;
+            let row = used & ((1 << ROW_BITS) - 1);
             if used == entry(row, 0) {
                 moved(row, end);
             }

@@ -54,15 +54,14 @@ pub(crate) struct LodThresholds {
 
 impl LodThresholds {
     pub fn new(settings: &LevelOfDetail, lens: Lens, impostors: ImpostorRange) -> Self {
-        let [high, medium] = settings.distances.distances_m(1.0, lens);
+        let [high, middle, medium] = settings.screen_sizes.distances_of_three_m(1.0, lens);
         let ends = match settings.style {
-            // The second thinning begins half way, as the eye sees distances.
-            LevelStyle::Thinned => [high, (high * medium).sqrt(), medium],
+            LevelStyle::Thinned => [high, middle, medium],
             LevelStyle::Paper => [high, medium, NEVER_M],
             LevelStyle::Full => [NEVER_M; MOST_LEVELS],
         };
         let impostors_from_m = impostors.from_m.unwrap_or(NEVER_M);
-        Self { ends, fade: settings.fade, margin: settings.distances.margin, impostors_from_m }
+        Self { ends, fade: settings.fade, margin: settings.screen_sizes.margin, impostors_from_m }
     }
 
     /// The selection for a tree of a height, m, with `count` levels, after the selection before.

@@ -4,13 +4,11 @@ use super::{
     impostor_range::ImpostorRange,
     thresholds::{LodDistance, LodThresholds},
 };
-use crate::{lod::Lens, render::settings::ActiveLevelOfDetail, viewpoint::Viewpoint};
+use crate::{lod::Lens, render::settings::ActiveLevelOfDetail, viewpoint::Viewpoints};
 use bevy::prelude::*;
 
 /// LOD levels are selected anew when a viewer has moved so far, m.
 const STEP_M: f32 = 0.5;
-/// The lens that is assumed where there is no camera.
-const DEFAULT_LENS: Lens = Lens { fov_rad: std::f32::consts::FRAC_PI_4, picture_px: 1080.0 };
 
 /// A place from which trees are seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +56,7 @@ pub(crate) struct LodViewers {
 impl FromWorld for LodViewers {
     fn from_world(world: &mut World) -> Self {
         let settings = &world.get_resource_or_init::<ActiveLevelOfDetail>().0;
-        let thresholds = LodThresholds::new(settings, DEFAULT_LENS, ImpostorRange::default());
+        let thresholds = LodThresholds::new(settings, Lens::default(), ImpostorRange::default());
         Self { thresholds, viewers: Vec::new(), selected_for: Vec::new(), is_due: false }
     }
 }
@@ -102,24 +100,25 @@ fn pixels_per_metre(camera: &Camera, projection: &Projection) -> Option<PixelsPe
 pub(crate) fn update_lod_viewers(
     settings: Res<ActiveLevelOfDetail>,
     impostors: Res<ImpostorRange>,
-    viewpoints: Query<(&GlobalTransform, Option<(&Camera, &Projection)>), With<Viewpoint>>,
+    viewpoints: Viewpoints,
     mut viewers: ResMut<LodViewers>,
 ) {
     let viewers = viewers.bypass_change_detection();
     let seen = || {
         // A camera that was spawned in this frame has neither a place nor a picture yet.
-        let is_active = |camera: Option<(&Camera, &Projection)>| {
-            camera.is_none_or(|(camera, _)| camera.is_active && camera.physical_viewport_size().is_some())
-        };
-        let eyes = viewpoints.iter().filter(move |(at, camera)| at.translation().is_finite() && is_active(*camera));
-        eyes.map(|(at, camera)| (at.translation(), camera.and_then(|(camera, it)| pixels_per_metre(camera, it))))
+        let has_picture =
+            |camera: Option<&Camera>| camera.is_none_or(|camera| camera.physical_viewport_size().is_some());
+        let eyes = viewpoints.active().filter(move |(_, camera, _)| has_picture(*camera));
+        eyes.map(|(at, camera, projection)| {
+            (at.translation(), camera.zip(projection).and_then(|(camera, it)| pixels_per_metre(camera, it)))
+        })
     };
     let perspective = seen().filter_map(|(_, pixels)| match pixels {
         Some(PixelsPerMetre::At1M(px)) => Some(px),
         _ => None,
     });
-    // The lens that shows most is that of the thresholds.
-    let px_at_1_m = perspective.reduce(f32::max).unwrap_or(DEFAULT_LENS.pixels_at_1_m());
+    // The lens that shows most is that of the thresholds; without a camera, the usual one.
+    let px_at_1_m = perspective.reduce(f32::max).unwrap_or(Lens::default().pixels_at_1_m());
     viewers.viewers.clear();
     viewers.viewers.extend(seen().map(|(eye, pixels)| {
         let scale = match pixels {
@@ -143,7 +142,7 @@ pub(crate) fn update_lod_viewers(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lod::LodScreenSizes;
+    use crate::{lod::LodScreenSizes, viewpoint::Viewpoint};
     use bevy::{
         camera::{ScalingMode, Viewport},
         ecs::system::RunSystemOnce,

@@ -6,12 +6,13 @@ use super::{
 };
 use crate::{
     lod::{
-        CrossedPolygons, Decimation, EnvelopeLevel, EnvelopeVertices, LodBakeSettings, Scene, crossed_polygons,
-        decimate, prunable_radius_m,
+        CrossedPolygons, Decimation, EnvelopeLevel, EnvelopeVertices, Lens, LodBakeSettings, LodScreenSizes, Scene,
+        crossed_polygons, decimate, prunable_radius_m,
     },
     render::settings::LevelStyle,
     tree::{
         Growth, Species, TreeModel,
+        crown::impressionist::leaves_at,
         textures::{SpeciesTextures, species_textures},
         vertices::{LeafVertices, WoodVertices},
     },
@@ -80,10 +81,10 @@ pub(crate) fn species_meshes(
     has_images: bool,
     models: Vec<TreeModel>,
     style: LevelStyle,
+    settings: &LodBakeSettings,
 ) -> SpeciesMeshes {
     let textures = (has_images || style == LevelStyle::Paper).then(|| species_textures(species));
-    let settings = LodBakeSettings::default();
-    // Ellipsoids and impressionistic crowns have few parts, each of which is seen: none may be left out.
+    // Ellipsoids are few, and each is seen: none may be left out. Impressionist crowns know which of their polygons may.
     let is_indivisible = matches!(species.growth, Growth::Gardner(_) | Growth::Impressionist(_));
     let leaf_share = |share| if is_indivisible { 1.0 } else { share };
     let least_radius_m = |model: &TreeModel, most_m| match species.phenology.evergreen {
@@ -98,10 +99,10 @@ pub(crate) fn species_meshes(
         settings.decimations.iter().map(bearable).collect()
     };
     let levels = |model: TreeModel| match (style, &textures) {
-        (LevelStyle::Paper, Some(textures)) => paper_levels(species, model, textures, &settings),
+        (LevelStyle::Paper, Some(textures)) => paper_levels(species, model, textures, settings),
         (LevelStyle::Thinned, _) => {
             let decimations = decimations(&model);
-            thinned_levels(model, &decimations)
+            thinned_levels(species, model, &decimations)
         }
         (LevelStyle::Full | LevelStyle::Paper, _) => vec![full_level(model, MaterialKind::Bark)],
     };
@@ -123,11 +124,15 @@ fn foliage(leaves: LeafVertices) -> Option<MeshPart> {
 }
 
 /// The tree itself, and thinned ones. Only the last bark fades, into the impostor. Between the others no more than twigs thinner than a
-/// pixel is left out.
-fn thinned_levels(model: TreeModel, decimations: &[Decimation]) -> Vec<LodMeshes> {
+/// pixel is left out. Impressionist crowns have the polygons of the distance at which the level begins, on a usual camera's picture.
+fn thinned_levels(species: &Species, model: TreeModel, decimations: &[Decimation]) -> Vec<LodMeshes> {
     let last = decimations.len();
     let thinned = decimations.iter().enumerate().map(|(number, decimation)| {
-        let meshes = decimate(&model, decimation);
+        let mut meshes = decimate(&model, decimation);
+        if let Growth::Impressionist(crown) = &species.growth {
+            let begin_m = LodScreenSizes::default().distances_of_three_m(crown.height_m, Lens::default())[number];
+            meshes.leaves = leaves_at(crown, &model.skeleton, begin_m);
+        }
         let material = if number + 1 == last { MaterialKind::FadingBark } else { MaterialKind::Bark };
         let wood = MeshPart { mesh: wood_mesh(meshes.wood), material };
         LodMeshes { wood, leaves: foliage(meshes.leaves), is_wood_nested: true }
@@ -207,12 +212,28 @@ fn mesh(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tree::MOST_ENLARGED;
+    use crate::{
+        lod::LEAST_LEAF_SHARE,
+        tree::{MOST_ENLARGED, crown::impressionist::ImpressionistCrown},
+    };
 
     #[test]
     fn bounds_have_room_for_the_leaves_of_thinned_trees() {
-        for Decimation { leaf_share, .. } in LodBakeSettings::default().decimations {
-            assert!(leaf_share.sqrt().recip() < MOST_ENLARGED, "{leaf_share}");
-        }
+        assert!(LEAST_LEAF_SHARE.sqrt().recip() < MOST_ENLARGED);
+    }
+
+    #[test]
+    fn impressionist_crowns_have_fewer_polygons_at_lower_levels() {
+        let crown = ImpressionistCrown { full_detail_m: 30.0, ..ImpressionistCrown::default() };
+        let species = Species { growth: Growth::Impressionist(crown), variants: 1, ..Species::default() };
+        let model = TreeModel::bake(&species, species.age.mature_years, 1);
+        let polygons = model.skeleton.clusters.len() as f32;
+        let meshes = species_meshes(&species, false, vec![model], LevelStyle::Thinned, &LodBakeSettings::default());
+        let vertices = |lod: &LodMeshes| lod.leaves.as_ref().map_or(0, |part| part.mesh.count_vertices());
+        let shares: Vec<f32> =
+            meshes.variants[0].lods.iter().map(|lod| vertices(lod) as f32 / 3.0 / polygons).collect();
+        // A tree of 14 m has 700 pixels of a picture of 1080 at 26.1 m, and the geometric mean of 700 and 100 at 69.0 m.
+        let expected = [1.0, 1.0, 30.0 / 69.0];
+        assert!(shares.iter().zip(expected).all(|(share, expected)| (share - expected).abs() < 0.005), "{shares:?}");
     }
 }

@@ -8,6 +8,7 @@ use super::{
     materials::{MaterialAssets, SpeciesMaterials},
 };
 use crate::{
+    lod::LodBakeSettings,
     render::{
         settings::{ActiveLevelOfDetail, LevelStyle},
         wind_exposure::WindExposure,
@@ -27,7 +28,9 @@ pub(crate) struct PreparationQueue {
     /// Species and steps of age that wait to be started.
     waiting: VecDeque<(AssetId<Species>, i32)>,
     running: Vec<Preparation>,
+    /// What they are prepared with.
     style: LevelStyle,
+    bake: LodBakeSettings,
 }
 
 struct Preparation {
@@ -37,7 +40,7 @@ struct Preparation {
     task: Task<SpeciesMeshes>,
 }
 
-/// Starts preparing species that were baked, or all of them when the style of the levels has changed, one a frame.
+/// Starts preparing species that were baked, or all of them when the settings of their levels have changed, one a frame.
 pub(crate) fn start_preparing_species(
     mut baked: MessageReader<SpeciesBaked>,
     species_models: Res<SpeciesModels>,
@@ -46,10 +49,11 @@ pub(crate) fn start_preparing_species(
     library: Res<SpeciesLibrary>,
     mut queue: ResMut<PreparationQueue>,
 ) {
-    let PreparationQueue { waiting, running, style } = queue.bypass_change_detection();
+    let PreparationQueue { waiting, running, style, bake } = queue.bypass_change_detection();
     waiting.extend(baked.read().map(|&SpeciesBaked { species, step }| (species, step)));
-    if *style != settings.0.style {
+    if *style != settings.0.style || *bake != settings.0.bake {
         *style = settings.0.style;
+        bake.clone_from(&settings.0.bake);
         waiting.clear();
         waiting.extend(species_models.stages());
         waiting.make_contiguous().sort_unstable();
@@ -57,12 +61,13 @@ pub(crate) fn start_preparing_species(
     let Some((id, age_step)) = waiting.pop_front() else { return };
     let Some(entry) = species_models.get(id) else { return };
     let Some(stage) = entry.stages.get(&age_step) else { return };
-    let (species, style, generation) = (entry.species.clone(), *style, stage.generation);
+    let (species, style, bake, generation) = (entry.species.clone(), *style, bake.clone(), stage.generation);
     let variants: Vec<TreeModel> = stage.models.iter().filter_map(|model| models.get(model).cloned()).collect();
     running.retain(|other| (other.species, other.age_step) != (id, age_step));
     let has_images = library.species.get(&id).is_some_and(|prepared| prepared.generation == generation)
         || running.iter().any(|other| (other.species, other.generation) == (id, generation));
-    let task = AsyncComputeTaskPool::get().spawn(async move { species_meshes(&species, !has_images, variants, style) });
+    let task =
+        AsyncComputeTaskPool::get().spawn(async move { species_meshes(&species, !has_images, variants, style, &bake) });
     running.push(Preparation { species: id, age_step, generation, task });
 }
 
@@ -142,5 +147,55 @@ impl PreparedAssets<'_> {
             materials: self.materials.of_mesh(material, species),
         };
         PreparedLod { wood: add(wood), leaves: leaves.map(add), is_wood_nested }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        lod::Decimation,
+        tree::{Tree, TreePlugin},
+    };
+    use bevy::ecs::system::SystemId;
+
+    /// An app in which one sapling has been baked, and the system that starts to prepare it.
+    fn app() -> (App, SystemId) {
+        let mut app = App::new();
+        app.add_plugins((TaskPoolPlugin::default(), AssetPlugin::default(), TreePlugin))
+            .init_resource::<ActiveLevelOfDetail>()
+            .init_resource::<SpeciesLibrary>()
+            .init_resource::<PreparationQueue>();
+        let species = Species { variants: 1, ..Species::default() };
+        let species = app.world_mut().resource_mut::<Assets<Species>>().add(species);
+        app.world_mut().spawn(Tree { age_years: Some(3.0), ..Tree::new(species) });
+        for _ in 0..10_000 {
+            app.update();
+            if app.world().resource::<SpeciesModels>().stages().next().is_some() {
+                break;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        let system = app.register_system(start_preparing_species);
+        (app, system)
+    }
+
+    /// Starts what is due, and returns the number of levels of each tree that is then prepared.
+    fn prepared_levels((app, system): &mut (App, SystemId)) -> Vec<usize> {
+        app.world_mut().run_system(*system).expect("it runs");
+        let running = std::mem::take(&mut app.world_mut().resource_mut::<PreparationQueue>().running);
+        running.into_iter().flat_map(|it| block_on(it.task).variants).map(|variant| variant.lods.len()).collect()
+    }
+
+    #[test]
+    fn changed_bake_settings_prepare_all_species_anew() {
+        let mut app = app();
+        assert_eq!(prepared_levels(&mut app), [3]);
+        assert!(prepared_levels(&mut app).is_empty(), "nothing has changed");
+        let thinned_once = vec![Decimation { leaf_share: 0.5, ..default() }];
+        app.0.world_mut().resource_mut::<ActiveLevelOfDetail>().0.bake.decimations = thinned_once;
+        assert_eq!(prepared_levels(&mut app), [2]);
+        app.0.world_mut().resource_mut::<ActiveLevelOfDetail>().0.fade = 0.2;
+        assert!(prepared_levels(&mut app).is_empty(), "no mesh depends on this");
     }
 }

@@ -9,6 +9,7 @@ use super::{
     stock::{GroundLimits, Stock},
 };
 use crate::{
+    ron_loader::RonAsset,
     ron_text::from_ron,
     scatter::{
         counts::law::{CountLaw, CountModel, GREATEST_MEAN},
@@ -129,6 +130,16 @@ impl ForestPlan {
             keep_out.validate().map_err(|error| error.inside(&format!("keep_out[{index}]")))?;
         }
         Ok(())
+    }
+}
+
+impl RonAsset for ForestPlan {
+    type Error = ScatterError;
+
+    const EXTENSIONS: &'static [&'static str] = &["forest.ron"];
+
+    fn read(text: &str) -> Result<Self, ScatterError> {
+        Self::from_ron(text)
     }
 }
 

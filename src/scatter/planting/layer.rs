@@ -4,9 +4,9 @@ use bevy::math::{DVec2, IVec2};
 use rand::{Rng, RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 
 use crate::{
+    ground::Ground,
     scatter::{
         counts::probability::Probabilities,
-        ground::Ground,
         plan::{forest::Area, shape::Region, stock::Stock},
         quadrat::place::throw_darts,
     },
@@ -163,8 +163,7 @@ impl Layer {
         if !covered || !free(at) {
             return None;
         }
-        let place = at.as_vec2();
-        let (height_m, slope) = (ground.height_m(place.x, place.y), ground.slope(place.x, place.y));
+        let (height_m, slope) = (ground.height_m(at) as f32, ground.slope(at) as f32);
         let chance = share_of(mix(seed ^ LIMITS));
         if !height_m.is_finite() || !self.area.ground.admit(height_m, slope, chance) {
             return None;

@@ -9,12 +9,10 @@ use super::{
     spacing::keep_apart,
 };
 use crate::{
-    scatter::{
-        ground::Ground,
-        plan::{
-            forest::ForestPlan,
-            keep_out::{Blocker, KeepOut},
-        },
+    ground::Ground,
+    scatter::plan::{
+        forest::ForestPlan,
+        keep_out::{Blocker, KeepOut},
     },
     setting::{SettingError, require},
 };
@@ -115,8 +113,7 @@ impl Planter {
         if near.iter().any(|&number| self.blockers[number as usize].covers(at)) {
             return 0.0;
         }
-        let place = at.as_vec2();
-        let (height_m, slope) = (ground.height_m(place.x, place.y), ground.slope(place.x, place.y));
+        let (height_m, slope) = (ground.height_m(at) as f32, ground.slope(at) as f32);
         if !height_m.is_finite() {
             return 0.0;
         }

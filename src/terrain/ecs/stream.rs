@@ -2,6 +2,7 @@
 
 use crate::{
     render::texture_image::{ALL_MIPS, image},
+    setting::valid_or_last,
     terrain::{
         chunk::{ChunkVertices, chunk_vertices},
         chunk_key::{COARSEST_NEIGHBOUR, ChunkKey},
@@ -83,14 +84,8 @@ pub(in crate::terrain) fn begin_terrains(
     changed: Query<(Entity, &TerrainSettings, &GroundLook, Option<&TerrainChunks>), NewGround>,
 ) {
     for (entity, wanted, look, before) in &changed {
-        let settings = match wanted.validate() {
-            Ok(()) => *wanted,
-            Err(error) => {
-                let last = before.map_or_else(TerrainSettings::default, |before| before.settings);
-                warn!("terrain settings: {error}; {last:?} are used");
-                last
-            }
-        };
+        let last = before.map(|before| &before.settings);
+        let settings = valid_or_last("terrain settings", wanted, TerrainSettings::validate, last);
         for chunk in before.into_iter().flat_map(|before| before.chunks.values()) {
             commands.entity(*chunk).despawn();
         }

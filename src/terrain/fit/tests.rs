@@ -1,5 +1,8 @@
 use super::*;
-use crate::terrain::{ElevationGrid, ElevationScale, Heightfield, TurningBands, VariogramSettings};
+use crate::{
+    ground::Ground,
+    terrain::{ElevationGrid, ElevationScale, TurningBands, VariogramSettings},
+};
 use approx::assert_relative_eq;
 
 const CELL_M: f64 = 5.0;

@@ -51,15 +51,16 @@ pub fn grow(crown: &ImpressionistCrown, scale: f32, random: &mut impl Rng) -> Sk
 /// 0) and (1, 0).
 #[must_use]
 pub fn leaves(crown: &ImpressionistCrown, skeleton: &Skeleton) -> LeafVertices {
-    polygons::leaves(crown, skeleton, skeleton.clusters.len(), 1.0)
+    leaves_at(crown, skeleton, 0.0)
 }
 
-/// The same for a crown seen from `distance_m`: fewer polygons, and larger ones.
+/// The same for a grown crown seen from `distance_m`: fewer polygons, and larger ones. Of a younger one, the distance is that from
+/// which the grown one looks as large.
 #[must_use]
 pub fn leaves_at(crown: &ImpressionistCrown, skeleton: &Skeleton, distance_m: f32) -> LeafVertices {
-    let share = crown.polygons_at(distance_m) as f32 / crown.polygons.max(1) as f32;
-    let count = (share * skeleton.clusters.len() as f32).round() as usize;
-    polygons::leaves(crown, skeleton, count, crown.polygon_gain_at(distance_m))
+    let all = skeleton.clusters.len();
+    let count = ((crown.polygon_share_at(distance_m) * all as f32).ceil() as usize).clamp(1, all.max(1));
+    polygons::leaves(crown, skeleton, count, (all as f32 / count as f32).sqrt())
 }
 
 /// The texture of a polygon: a triangle with ragged edges, in winter a spray of bare twigs.

@@ -8,6 +8,7 @@ use crate::{
     setting::{SettingError, require},
     texture::linear,
     tree::{
+        bounds::MOST_ENLARGED,
         foliage::CLUSTERS_LIMIT,
         growth::{
             envelope::{Envelope, EnvelopeShape},
@@ -20,8 +21,6 @@ use crate::{
 pub const LIMBS_LIMIT: u32 = 48;
 /// Most branches of a limb.
 pub const BRANCHES_LIMIT: u32 = 12;
-/// Fewest polygons that are drawn, however far away the crown is.
-const FEWEST_POLYGONS: usize = 24;
 
 /// Styles of crowns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect, Serialize, Deserialize)]
@@ -84,7 +83,8 @@ pub struct ImpressionistCrown {
     pub least_brightness: f32,
     /// Brightness of the outermost, sRGB: 0 to 1.
     pub greatest_brightness: f32,
-    /// Distance up to which all polygons are drawn, m: 1 to 10000.
+    /// Distance up to which all polygons are drawn, m: 1 to 10000. Lower levels of detail have as many as belong to the distance at
+    /// which they begin.
     pub full_detail_m: f32,
     /// Radius of the trunk, m: 0.01 to 5.
     pub trunk_radius_m: f32,
@@ -218,19 +218,11 @@ impl ImpressionistCrown {
         }
     }
 
-    /// Number of polygons, before gaps, that are drawn from a distance in m: all near by, then as many as keep their
-    /// number for each metre of the crown's width on the screen.
+    /// Share of the polygons that are drawn from a distance, m: all near by, then as many as keep their number for each metre of the
+    /// crown's width on the screen. They are enlarged, so that they cover as much, and the tree's bounds limit how far.
     #[must_use]
-    pub fn polygons_at(&self, distance_m: f32) -> usize {
-        let share = (self.full_detail_m / distance_m.max(self.full_detail_m)).clamp(0.0, 1.0);
-        let all = self.polygons.max(1) as usize;
-        ((all as f32 * share).round() as usize).max(FEWEST_POLYGONS.min(all))
-    }
-
-    /// How much larger those are, so that they cover as much.
-    #[must_use]
-    pub fn polygon_gain_at(&self, distance_m: f32) -> f32 {
-        (self.polygons.max(1) as f32 / self.polygons_at(distance_m) as f32).sqrt()
+    pub fn polygon_share_at(&self, distance_m: f32) -> f32 {
+        (self.full_detail_m / distance_m.max(self.full_detail_m)).clamp(MOST_ENLARGED.powi(-2), 1.0)
     }
 
     /// Light of polygons at a depth (0 outermost to 1) as a share of the outermost's, 0 to 1. Brightness runs linearly

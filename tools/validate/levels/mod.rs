@@ -82,9 +82,13 @@ pub fn run(picture: &Path, only: Option<&str>, year: f32) -> Report {
         "what a fade changes in a frame of a walker, over what the wind does",
     );
     report.record("abrupt_ratio_worst", worst.abrupt, "the same if levels changed at once");
-    report.record("abrupt_ratio_painted", worst_coarse.abrupt, "of crowns of a few large parts, which hardly move");
-    report.record("coverage_difference_painted", worst_coarse.coverage, "of crowns of a few large parts");
-    report.record("colour_difference_painted", worst_coarse.colour, "of crowns of a few large parts");
+    report.record(
+        "abrupt_ratio_coarse_crowns",
+        worst_coarse.abrupt,
+        "of crowns of a few large parts, which hardly move",
+    );
+    report.record("coverage_difference_coarse_crowns", worst_coarse.coverage, "of crowns of a few large parts");
+    report.record("colour_difference_coarse_crowns", worst_coarse.colour, "of crowns of a few large parts");
     report.record("coverage_difference_worst", worst.coverage, "of a coarser level, as a share of the full tree's");
     report.record(
         "outline_difference_worst",

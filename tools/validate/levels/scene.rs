@@ -142,10 +142,10 @@ impl TestScene {
 
     fn render_at(&mut self, shot: Shot, time_s: f64) -> RgbImage {
         let world = self.app.world_mut();
-        let (style, distances) = level_settings(shot, self.size_px);
+        let (style, screen_sizes) = level_settings(shot, self.size_px);
         let mut detail = world.resource_mut::<LevelOfDetail>();
         let other_style = detail.style != style;
-        (detail.style, detail.distances) = (style, distances);
+        (detail.style, detail.screen_sizes) = (style, screen_sizes);
         *world.resource_mut::<WindClock>() = WindClock { time_s, previous_s: time_s };
         if other_style && let Err(error) = self.wait_for_levels() {
             eprintln!("{error}");

@@ -89,7 +89,7 @@ fn measure(report: &mut Report) -> Result<(), String> {
         report.at_most(p99_key, p99_ms, 4.0, "the same, the frame that is slower than 99 of 100");
         let keys = [
             ["turn_ms_1e6", "turn_ms_worst_1e6"],
-            ["leap_ms_1e6", "leap_ms_worst_1e6"],
+            ["teleport_ms_1e6", "teleport_ms_worst_1e6"],
             ["wind_ms_1e6", "wind_ms_worst_1e6"],
         ];
         stress::record(report, keys, result.slowest_ms);
@@ -140,7 +140,7 @@ struct FlightResult {
     startup_s: f64,
     known_s: f64,
     bytes_per_tree: f64,
-    /// Of turns, jumps and changes of the wind in the largest forest.
+    /// Of turns, teleports and changes of the wind in the largest forest.
     slowest_ms: [Slowest; 3],
     stems_m: Vec<Vec3>,
 }

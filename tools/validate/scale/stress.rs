@@ -1,6 +1,6 @@
-//! Worse for a forest than a steady flight: a viewer who turns quickly or jumps to another place, and a change of the wind.
+//! Worse for a forest than a steady flight: a viewer who turns quickly or is teleported, and a change of the wind.
 //!
-//! A system that spawns a task may lose its core to it, and on a machine with two cores often does. With a renderer jumps are
+//! A system that spawns a task may lose its core to it, and on a machine with two cores often does. With a renderer teleports are
 //! therefore measured again by CPU time, which does not pass while a thread waits.
 
 use super::{SIDE_M, flight::Flight, system_costs::median_and_p99};
@@ -14,7 +14,7 @@ use std::time::Duration;
 const REPETITIONS: usize = 5;
 /// Frames of a whole turn.
 const TURN_FRAMES: usize = 15;
-/// Frames after a jump, in which most near trees appear.
+/// Frames after a teleport, in which most near trees appear.
 const JUMP_FRAMES: usize = 40;
 /// The first of the winds, m/s. Each is faster than the one before, so that the bounds of trees change.
 const FIRST_WIND_M_S: f32 = 6.0;
@@ -34,9 +34,9 @@ pub struct StressTest<'a, F> {
 pub type Slowest = [f64; 2];
 
 impl<F: FnMut(&mut App)> StressTest<'_, F> {
-    /// Slowest frames of a turn by 24 degrees per frame, after a jump, and during a change of the wind.
+    /// Slowest frames of a turn by 24 degrees per frame, after a teleport, and during a change of the wind.
     pub fn slowest_frames_ms(&mut self) -> [Slowest; 3] {
-        [self.slowest_of(Self::turn), self.slowest_of(Self::jump), self.slowest_of(Self::change_wind)]
+        [self.slowest_of(Self::turn), self.slowest_of(Self::teleport), self.slowest_of(Self::change_wind)]
     }
 
     fn slowest_of(&mut self, action: fn(&mut Self, usize) -> f64) -> Slowest {
@@ -44,11 +44,11 @@ impl<F: FnMut(&mut App)> StressTest<'_, F> {
         [median_and_p99(&of_each)[0], of_each.iter().copied().fold(0.0, f64::max)]
     }
 
-    /// Slowest frames after jumps by CPU time, or none where the system has no such clock. From then on all times are CPU times.
-    pub fn slowest_jump_cpu_ms(&mut self) -> Option<Slowest> {
+    /// Slowest frames after teleports by CPU time, or none where the system has no such clock. From then on all times are CPU times.
+    pub fn slowest_teleport_cpu_ms(&mut self) -> Option<Slowest> {
         let clock = CPU_CLOCK?;
         self.app.world().resource::<SystemTimes>().use_clock(clock);
-        Some(self.slowest_of(Self::jump))
+        Some(self.slowest_of(Self::teleport))
     }
 
     /// Time of our systems in a frame, ms.
@@ -65,7 +65,7 @@ impl<F: FnMut(&mut App)> StressTest<'_, F> {
         (0..TURN_FRAMES).map(&mut frame_ms).fold(0.0, f64::max)
     }
 
-    fn jump(&mut self, repetition: usize) -> f64 {
+    fn teleport(&mut self, repetition: usize) -> f64 {
         self.flight.place(self.app, |at| {
             at.translation.x = place_m(repetition, 0.754_877_7);
             at.translation.z = place_m(repetition, 0.569_840_3);
@@ -89,11 +89,11 @@ impl<F: FnMut(&mut App)> StressTest<'_, F> {
     }
 }
 
-/// Records turns, jumps and winds with these keys: the median, and the worst.
+/// Records turns, teleports and winds with these keys: the median, and the worst.
 pub fn record(report: &mut Report, keys: [[&'static str; 2]; 3], slowest_ms: [Slowest; 3]) {
     let notes = [
         "the slowest frame of a quick turn on the spot, median of five",
-        "the slowest frame after a jump of kilometres, median of five",
+        "the slowest frame after a teleport of kilometres, median of five",
         "the slowest frame during a change of the wind, median of five",
     ];
     for (([median_key, worst_key], [median_ms, worst_ms]), note) in keys.into_iter().zip(slowest_ms).zip(notes) {

@@ -1,13 +1,15 @@
 use super::*;
-use crate::scatter::{
-    counts::{dispersion::goodness_of_fit, frequencies::Frequencies, law::CountModel},
+use crate::{
     ground::LevelGround,
-    plan::{
-        forest::Area,
-        shape::Shape,
-        stock::{GroundLimits, Stock},
+    scatter::{
+        counts::{dispersion::goodness_of_fit, frequencies::Frequencies, law::CountModel},
+        plan::{
+            forest::Area,
+            shape::Shape,
+            stock::{GroundLimits, Stock},
+        },
+        quadrat::grid::QuadratGrid,
     },
-    quadrat::grid::QuadratGrid,
 };
 use proptest::prelude::*;
 use std::collections::BTreeSet;
@@ -155,11 +157,11 @@ fn limits_of_ground_and_keep_out_shapes_hold() {
     /// Rises along x, with a hole.
     struct Slope;
     impl Ground for Slope {
-        fn height_m(&self, x_m: f32, z_m: f32) -> f32 {
-            if z_m > 80.0 { f32::NAN } else { x_m }
+        fn height_m(&self, place: DVec2) -> f64 {
+            if place.y > 80.0 { f64::NAN } else { place.x }
         }
-        fn slope(&self, _: f32, z_m: f32) -> f32 {
-            if z_m < -80.0 { 2.0 } else { 0.1 }
+        fn gradient(&self, place: DVec2) -> DVec2 {
+            DVec2::X * if place.y < -80.0 { 2.0 } else { 0.1 }
         }
     }
     let stock = |species: &str, highest_m| Stock {

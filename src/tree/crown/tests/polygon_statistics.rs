@@ -2,6 +2,7 @@
 
 use super::{FORMS, grown};
 use crate::tree::{
+    bounds::MOST_ENLARGED,
     crown::{
         CrownStatistics,
         impressionist::{self, CrownForm, ImpressionistCrown},
@@ -148,9 +149,12 @@ fn distance_draws_fewer_polygons_that_cover_as_much() {
         assert!((covered(&leaves) / covered(&near) - 1.0).abs() < 0.1, "{distance_m} m");
     }
     assert_eq!(impressionist::leaves_at(&crown, &skeleton, 10.0), near);
-    assert_eq!(crown.polygons_at(80.0), crown.polygons as usize / 2);
-    assert_eq!(crown.polygons_at(1e9), 24);
-    assert_eq!(crown.polygons_at(f32::NAN), crown.polygons as usize);
+    assert_eq!(crown.polygon_share_at(80.0), 0.5);
+    assert!(
+        crown.polygon_share_at(f32::INFINITY).sqrt().recip() <= MOST_ENLARGED + 1e-6,
+        "bounds have room for no more"
+    );
+    assert_eq!(crown.polygon_share_at(f32::NAN), 1.0);
 }
 
 #[test]
