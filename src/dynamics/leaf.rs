@@ -121,10 +121,11 @@ impl LeafResponse {
 /// [`FULL_SHARE_ANGLE_RAD`]. `direction` is the wind's, or zero.
 fn turn_towards(axis: Vec3, direction: Vec3, turned: f32) -> Quat {
     let normal = axis.cross(direction);
-    let sine = normal.length();
+    // In a calm both are zero, of which shaders know no arc tangent.
+    let sine = normal.length().max(LEAST_LENGTH);
     let angle = sine.atan2(axis.dot(direction));
     let share = turned * (1.0 - smooth_share(FULL_SHARE_ANGLE_RAD, PI, angle));
-    Quat::from_scaled_axis(normal / sine.max(LEAST_LENGTH) * (share * angle))
+    Quat::from_scaled_axis(normal / sine * (share * angle))
 }
 
 /// The flutter in full wind, as a rotation vector. It depends on the axis at rest alone: it is fixed to the leaf, and
