@@ -68,11 +68,48 @@ fn the_wind_may_be_added_before_the_plugins_of_bevy() {
 }
 
 #[cfg(feature = "render")]
-#[test]
-#[should_panic(expected = "was added before Bevy's `RenderPlugin` and would draw nothing")]
-fn a_renderer_that_comes_later_is_refused() {
-    let mut app = server();
-    app.add_plugins(WindwoodPlugins);
-    app.insert_sub_app(bevy::render::RenderApp, SubApp::new());
-    app.finish();
+mod before_the_renderer {
+    use super::*;
+    use bevy_windwood::{
+        fire::FireDrawPlugin, forest::ForestRenderPlugin, grass::GrassDrawPlugin, render::TreeRenderPlugin,
+        terrain::TerrainDrawPlugin,
+    };
+
+    /// Adds a plugin that draws, and a renderer after it.
+    fn add(plugin: impl Plugin) {
+        let mut app = server();
+        app.add_plugins((WindwoodMinimalPlugins, plugin));
+        app.insert_sub_app(bevy::render::RenderApp, SubApp::new());
+        app.finish();
+    }
+
+    #[test]
+    #[should_panic(expected = "`TreeRenderPlugin` was added before Bevy's `RenderPlugin` and would draw nothing")]
+    fn trees_are_refused() {
+        add(TreeRenderPlugin);
+    }
+
+    #[test]
+    #[should_panic(expected = "`GrassDrawPlugin` was added before Bevy's `RenderPlugin` and would draw nothing")]
+    fn grass_is_refused() {
+        add(GrassDrawPlugin);
+    }
+
+    #[test]
+    #[should_panic(expected = "`FireDrawPlugin` was added before Bevy's `RenderPlugin` and would draw nothing")]
+    fn fire_is_refused() {
+        add(FireDrawPlugin);
+    }
+
+    #[test]
+    #[should_panic(expected = "`TerrainDrawPlugin` was added before Bevy's `RenderPlugin` and would draw nothing")]
+    fn ground_is_refused() {
+        add(TerrainDrawPlugin);
+    }
+
+    #[test]
+    #[should_panic(expected = "`ForestRenderPlugin` was added before Bevy's `RenderPlugin` and would draw nothing")]
+    fn forests_are_refused() {
+        add(ForestRenderPlugin);
+    }
 }

@@ -20,7 +20,7 @@ pub struct Cell {
 struct PlantRange {
     lowest_m: f32,
     highest_m: f32,
-    /// Size of the largest, relative to a full-grown individual.
+    /// [`Planted::plan_size`] of the largest.
     largest: f32,
 }
 
@@ -52,7 +52,7 @@ impl Cell {
                 Err(place) => counts.insert(place, (plant.species, 1)),
             }
             let height_m = plant.position.y;
-            let largest = plant.size.min(GREATEST_SIZE);
+            let largest = plant.plan_size.min(GREATEST_SIZE);
             range = range.merge(PlantRange { lowest_m: height_m, highest_m: height_m, largest });
         }
         Self {
@@ -93,7 +93,7 @@ impl Cell {
         (!self.range.is_nothing()).then_some([self.range.lowest_m, self.range.highest_m])
     }
 
-    /// Size of its largest plant, relative to a full-grown individual; 0 where nothing stands.
+    /// [`Planted::plan_size`] of its largest plant; 0 where nothing stands.
     pub fn largest(&self) -> f32 {
         self.range.largest
     }

@@ -141,6 +141,11 @@ impl CellStream {
     /// Notes that an order is fulfilled. Tells whether the cell is still wanted; if not, the caller drops it.
     pub fn fulfil(&mut self, cell: IVec2) -> bool {
         self.ordered.remove(&(cell.y, cell.x));
+        self.keeps(cell)
+    }
+
+    /// Whether a cell stays from where the viewers are, if it is there.
+    pub fn keeps(&self, cell: IVec2) -> bool {
         self.is_in(cell, &self.keep)
     }
 

@@ -6,7 +6,7 @@ use super::{
     mesh::{bounds, fire_mesh},
 };
 use crate::{
-    plugin_checks::has_renderer,
+    plugin_checks::{has_renderer, require_renderer_before},
     removal::remove_made,
     render::{RenderCapabilities, SwayBuffers},
     wind::WindClock,
@@ -37,6 +37,10 @@ impl Plugin for FireDrawPlugin {
         .register_type::<FireLight>()
         .add_observer(remove_made::<Fire, FireLight, FireMesh>)
         .add_systems(Update, (show_fires, flicker_lights).chain().after(generate_flames).run_if(can_draw));
+    }
+
+    fn finish(&self, app: &mut App) {
+        require_renderer_before::<Self>(app, app.is_plugin_added::<MaterialPlugin<FireMaterial>>());
     }
 }
 

@@ -23,10 +23,11 @@ pub(super) fn begin_forests(
     mut forests: Query<(Entity, Ref<Forest>, Ref<ForestSettings>, Option<Ref<ForestGround>>, Option<&mut ForestCells>)>,
     terrains: Query<(Ref<Terrain>, Ref<TerrainSettings>)>,
 ) {
-    let changed: Vec<AssetId<ForestPlan>> = events
+    let changed: Vec<(AssetId<ForestPlan>, bool)> = events
         .read()
         .filter_map(|event| match event {
-            AssetEvent::Added { id } | AssetEvent::Modified { id } => Some(*id),
+            AssetEvent::Added { id } => Some((*id, true)),
+            AssetEvent::Modified { id } => Some((*id, false)),
             _ => None,
         })
         .collect();
@@ -36,7 +37,11 @@ pub(super) fn begin_forests(
         terrain.as_ref().is_some_and(|(terrain, settings)| terrain.is_changed() || settings.is_changed());
     for (entity, forest, wanted, own_ground, before) in &mut forests {
         let other_ground = own_ground.as_ref().map_or(other_terrain, Ref::is_changed);
-        let due = forest.is_changed() || wanted.is_changed() || other_ground || changed.contains(&forest.plan.id());
+        // A plan that is made in code is there before its event comes: the forest has just begun with it.
+        let has_just_begun = before.as_ref().is_some_and(Mut::is_added);
+        let has_other_plan =
+            changed.iter().any(|(plan, is_new)| *plan == forest.plan.id() && !(*is_new && has_just_begun));
+        let due = forest.is_changed() || wanted.is_changed() || other_ground || has_other_plan;
         let Some(plan) = plans.get(&forest.plan).filter(|_| due) else { continue };
         let planter = match Planter::new(plan) {
             Ok(planter) => planter,

@@ -1,8 +1,16 @@
-//! The cells of a forest: its voxel grid, planted about the viewers in the background.
+//! The cells of a forest: planted about the viewers in the background, a tile at a time. Stems go into the store, near trees and impostors
+//! take what they need of each tile when it comes.
 
-use super::{components::ForestSettings, near::NearTrees, reach::reaching};
+use super::{
+    components::ForestSettings,
+    near::{CellTask, NearTrees},
+    planted_tile::{PlantedTile, cells_of_tile},
+    reach::{known_m, tile_stream},
+};
+#[cfg(feature = "render")]
+use crate::render::{impostors::near_mask::MaskRange, instances::components::HasImpostor};
 use crate::{
-    cells::{Cell, CellStore, CellStream, Orders, StreamSettings, ViewerPose},
+    cells::{Cell, CellSet, CellStore, CellStream, Orders, ViewerPose},
     ground::Ground,
     scatter::Planter,
     setting::SettingError,
@@ -10,13 +18,16 @@ use crate::{
     viewpoint::Viewpoints,
 };
 use bevy::{
+    platform::collections::HashMap,
     prelude::*,
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
 };
 use std::sync::Arc;
 
-/// Cells that a task plants one after another: one alone takes less time than to start a task.
-const CELLS_PER_TASK: usize = 16;
+pub(super) type SharedGround = Arc<dyn Ground>;
+
+/// A tile's plants, and its cells packed for the store.
+type Planting = Task<(Arc<PlantedTile>, Vec<(IVec2, Cell)>)>;
 
 /// A forest that grows: its plan made ready, and its cells about the viewers with every stem that stands there.
 #[derive(Component)]
@@ -27,11 +38,43 @@ pub struct ForestCells {
     /// Settings in force: the last that were valid.
     settings: ForestSettings,
     store: CellStore,
+    /// Cells along a side of a tile.
+    tile_cells: i32,
     stream: CellStream,
     orders: Orders,
-    planting: Vec<Task<Vec<(IVec2, Cell)>>>,
+    planting: Vec<(IVec2, Planting)>,
+    tiles: HashMap<IVec2, KnownTile>,
+    /// Tiles of the plan before, whose cells are in the store.
+    outdated: usize,
+    /// Tiles that impostors have still to be made of, where there are impostors.
+    #[cfg(feature = "render")]
+    for_impostors: Option<Vec<(IVec2, Arc<PlantedTile>)>>,
     pub(super) near: NearTrees,
+    /// From where on impostors stand for its trees, m; none until they are drawn.
+    #[cfg(feature = "render")]
+    pub(super) impostors_from_m: Option<f32>,
     generation: u64,
+    /// The generation since which tiles and numbers of species are the same.
+    tiles_since: u64,
+}
+
+/// A tile whose cells are in the store.
+struct KnownTile {
+    fingerprint: u64,
+    is_outdated: bool,
+}
+
+/// The tiles that are up to date.
+struct UpToDate<'a>(&'a HashMap<IVec2, KnownTile>);
+
+impl CellSet for UpToDate<'_> {
+    fn contains(&self, tile: IVec2) -> bool {
+        self.0.get(&tile).is_some_and(|tile| !tile.is_outdated)
+    }
+
+    fn visit(&self, visit: impl FnMut(IVec2)) {
+        self.0.iter().filter(|(_, tile)| !tile.is_outdated).map(|(tile, _)| *tile).for_each(visit);
+    }
 }
 
 impl ForestCells {
@@ -42,27 +85,53 @@ impl ForestCells {
         settings: ForestSettings,
         generation: u64,
     ) -> Result<Self, SettingError> {
-        let (cell_m, bounds) = (planter.cell_m(), planter.cells());
-        let known_m = settings.trees_to_m.max(settings.far_to_m);
-        let stream = StreamSettings { plants_per_step: 64, most_ordered: 256, ..reaching(known_m, cell_m) };
+        let cell_m = planter.cell_m();
+        let tile_cells = cells_of_tile(known_m(&settings), cell_m);
         Ok(Self {
             store: CellStore::new(cell_m)?,
-            stream: CellStream::new(stream, cell_m, bounds)?,
-            near: NearTrees::new(&settings, cell_m, bounds)?,
+            tile_cells,
+            stream: tile_stream(&planter, &settings, tile_cells)?,
+            near: NearTrees::new(&settings, cell_m, tile_cells, planter.cells())?,
             planter: Arc::new(planter),
             ground,
             species,
             settings,
             orders: Orders::default(),
             planting: Vec::new(),
+            tiles: HashMap::default(),
+            outdated: 0,
+            #[cfg(feature = "render")]
+            for_impostors: None,
+            #[cfg(feature = "render")]
+            impostors_from_m: None,
             generation,
+            tiles_since: generation,
         })
     }
 
-    /// Takes over the near trees of the plan before; what is of no use is returned. Where impostors have come or gone, trees have to be others.
+    /// Takes over what the forest before has; near cells that are of no use are returned. What stands there stays until it is known what
+    /// stands there now, and only that is changed which is another.
     pub(super) fn take_over(&mut self, before: &mut Self) -> Vec<Entity> {
+        let has_same_tiles = (before.planter.cell_m(), before.tile_cells) == (self.planter.cell_m(), self.tile_cells);
+        // Stems in the store have numbers of species.
+        if has_same_tiles && self.species.starts_with(&before.species) {
+            self.tiles_since = before.tiles_since;
+            std::mem::swap(&mut self.store, &mut before.store);
+            self.tiles = std::mem::take(&mut before.tiles);
+            self.tiles.values_mut().for_each(|tile| tile.is_outdated = true);
+            self.outdated = self.tiles.len();
+            #[cfg(feature = "render")]
+            {
+                self.for_impostors = before.for_impostors.take();
+            }
+        }
+        // Where impostors have come or gone, trees have to be others.
         if (before.settings.far_to_m > 0.0) != (self.settings.far_to_m > 0.0) {
             return before.near.entities().collect();
+        }
+        #[cfg(feature = "render")]
+        {
+            self.impostors_from_m = before.impostors_from_m;
         }
         self.near.take_over(&mut before.near)
     }
@@ -101,17 +170,24 @@ impl ForestCells {
         &self.settings
     }
 
-    pub(super) fn shared_planter(&self) -> Arc<Planter> {
-        self.planter.clone()
-    }
-
-    pub(super) fn ground(&self) -> Arc<dyn Ground> {
-        self.ground.clone()
-    }
-
-    /// Near trees, and what they are made from.
-    pub(super) fn parts(&mut self) -> (&mut NearTrees, &[Handle<Species>], &ForestSettings) {
-        (&mut self.near, &self.species, &self.settings)
+    /// Near trees, and what they are made from: the species, the settings, and how one of their cells is planted alone, where its tile is
+    /// known already.
+    pub(super) fn parts(
+        &mut self,
+    ) -> (&mut NearTrees, &[Handle<Species>], &ForestSettings, impl Fn(IVec2) -> Option<CellTask>) {
+        let Self { near, species, settings, tiles, tile_cells, planter, ground, .. } = self;
+        let plant = |cell: IVec2| {
+            let tile = cell.div_euclid(IVec2::splat(*tile_cells));
+            let (planter, ground) = (planter.clone(), ground.clone());
+            UpToDate(tiles).contains(tile).then(|| {
+                AsyncComputeTaskPool::get().spawn(async move {
+                    let mut planted = Vec::new();
+                    planter.plant(cell, &ground, &mut planted);
+                    planted
+                })
+            })
+        };
+        (near, species, settings, plant)
     }
 
     /// Grows whenever the forest begins anew.
@@ -121,24 +197,139 @@ impl ForestCells {
 
     /// Takes over what was planted, drops what nobody is near to any more, and has what is missing planted.
     fn step(&mut self, viewpoints: &[ViewerPose]) {
-        let Self { store, stream, planting, .. } = self;
-        planting.retain_mut(|task| {
-            let Some(planted) = block_on(poll_once(task)) else { return true };
-            for (cell, content) in planted {
-                stream.deliver(cell, content, store);
+        self.receive();
+        self.stream.step(viewpoints, &UpToDate(&self.tiles), &mut self.orders);
+        self.drop_tiles();
+        for &tile in &self.orders.plant {
+            let (planter, ground, side) = (self.planter.clone(), self.ground.clone(), self.tile_cells);
+            let task = AsyncComputeTaskPool::get().spawn(async move {
+                let planted = PlantedTile::plant(&planter, &ground, tile, side);
+                let pack = |(cell, plants)| (cell, Cell::pack(plants, planter.corner_m(cell), planter.cell_m()));
+                let packed = planted.cells().map(pack).collect();
+                (Arc::new(planted), packed)
+            });
+            self.planting.push((tile, task));
+        }
+    }
+
+    /// Takes over tiles that were planted. One that has the plants that it had stays as it is.
+    fn receive(&mut self) {
+        let Self { planting, stream, tiles, outdated, near, store, .. } = self;
+        #[cfg(feature = "render")]
+        let for_impostors = &mut self.for_impostors;
+        planting.retain_mut(|(place, task)| {
+            let Some((planted, packed)) = block_on(poll_once(task)) else { return true };
+            if !stream.fulfil(*place) {
+                return false;
+            }
+            near.offer(*place, &planted);
+            let known = KnownTile { fingerprint: planted.fingerprint(), is_outdated: false };
+            let before = tiles.insert(*place, known);
+            *outdated -= usize::from(before.as_ref().is_some_and(|before| before.is_outdated));
+            if before.is_some_and(|before| before.fingerprint == planted.fingerprint()) {
+                return false;
+            }
+            for (cell, content) in packed {
+                store.insert(cell, content);
+            }
+            #[cfg(feature = "render")]
+            if let Some(tiles) = for_impostors {
+                tiles.retain(|(other, _)| other != place);
+                tiles.push((*place, planted));
             }
             false
         });
-        self.stream.step(viewpoints, &self.store, &mut self.orders);
-        for cell in &self.orders.drop {
-            self.store.remove(*cell);
+    }
+
+    /// Drops tiles that nobody is near to any more, and outdated ones once all others are planted.
+    fn drop_tiles(&mut self) {
+        if self.outdated > 0 && self.stream.is_complete() {
+            let outdated = self.tiles.iter().filter(|(_, tile)| tile.is_outdated).map(|(tile, _)| *tile);
+            self.orders.drop.extend(outdated);
         }
-        for cells in self.orders.plant.chunks(CELLS_PER_TASK) {
-            let (planter, ground, cells) = (self.planter.clone(), self.ground.clone(), cells.to_vec());
-            self.planting.push(AsyncComputeTaskPool::get().spawn(async move {
-                let mut buffer = Vec::new();
-                cells.into_iter().map(|cell| (cell, Cell::plant(&planter, cell, &ground, &mut buffer))).collect()
-            }));
+        for place in &self.orders.drop {
+            let Some(tile) = self.tiles.remove(place) else { continue };
+            self.outdated -= usize::from(tile.is_outdated);
+            let cells = (0..self.tile_cells).flat_map(|z| (0..self.tile_cells).map(move |x| IVec2::new(x, z)));
+            for cell in cells {
+                self.store.remove(*place * self.tile_cells + cell);
+            }
+            #[cfg(feature = "render")]
+            if let Some(tiles) = &mut self.for_impostors {
+                tiles.retain(|(other, _)| other != place);
+            }
+        }
+    }
+}
+
+/// What impostors need of a forest.
+#[cfg(feature = "render")]
+impl ForestCells {
+    /// What tells its trees of their impostors; none where there are no impostors.
+    pub(super) fn impostor(&self) -> Option<HasImpostor> {
+        (self.settings.far_to_m > 0.0).then_some(HasImpostor { from_m: self.impostors_from_m })
+    }
+
+    /// The distances of its impostors.
+    pub(super) fn mask_range(&self) -> MaskRange {
+        let (cell_m, far_to_m) = (self.planter.cell_m(), self.settings.far_to_m);
+        MaskRange { cell_m, far_to_m, from_m: self.impostors_from_m }
+    }
+
+    /// Cells along a side of a tile.
+    pub(super) fn tile_cells(&self) -> i32 {
+        self.tile_cells
+    }
+
+    /// The generation since which tiles and numbers of species are the same.
+    pub(super) fn tiles_since(&self) -> u64 {
+        self.tiles_since
+    }
+
+    /// Tiles that were dropped in this frame.
+    pub(super) fn dropped_tiles(&self) -> &[IVec2] {
+        &self.orders.drop
+    }
+
+    /// Whether a tile is planted, be it after the plan before.
+    pub(super) fn has_tile(&self, tile: IVec2) -> bool {
+        self.tiles.contains_key(&tile)
+    }
+
+    /// Keeps every tile from now on until impostors are made of it, or keeps none any more.
+    pub(super) fn keep_tiles_for_impostors(&mut self, keeps: bool) {
+        if keeps != self.for_impostors.is_some() {
+            self.for_impostors = keeps.then(Vec::new);
+        }
+    }
+
+    /// Whether there are tiles that impostors have still to be made of.
+    pub(super) fn has_tiles_for_impostors(&self) -> bool {
+        self.for_impostors.as_ref().is_some_and(|tiles| !tiles.is_empty())
+    }
+
+    /// Takes so many of the tiles that impostors have still to be made of, the first ones.
+    pub(super) fn take_tiles_for_impostors(&mut self, most: usize) -> Vec<(IVec2, Arc<PlantedTile>)> {
+        let Some(tiles) = &mut self.for_impostors else { return Vec::new() };
+        tiles.drain(..most.min(tiles.len())).collect()
+    }
+
+    /// Where not all tiles are kept that impostors have to be made of, all are planted again.
+    pub(super) fn replant_lost_tiles(&mut self) {
+        if self.for_impostors.as_ref().is_none_or(|kept| kept.len() < self.tiles.len()) {
+            self.replant();
+        }
+    }
+
+    /// Has all tiles planted again, and takes them for others than they were.
+    pub(super) fn replant(&mut self) {
+        if let Ok(stream) = tile_stream(&self.planter, &self.settings, self.tile_cells) {
+            self.stream = stream;
+            self.planting.clear();
+            self.outdated = self.tiles.len();
+            self.tiles
+                .values_mut()
+                .for_each(|tile| *tile = KnownTile { fingerprint: !tile.fingerprint, is_outdated: true });
         }
     }
 }

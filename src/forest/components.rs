@@ -9,7 +9,7 @@ use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A forest that grows from a plan, in the world's own frame.
+/// A forest that grows from a plan, in the world's own frame. Its trees and impostors have its `RenderLayers`.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component)]
 #[require(ForestSettings, Transform, Visibility)]
@@ -36,7 +36,7 @@ pub struct ForestSettings {
     pub trees_to_m: f32,
     /// Beyond, trees are drawn as impostors as far as this; 0 for none. units: m, domain: \[0, 50000\].
     pub far_to_m: f32,
-    /// Cells that are planted at once in the background. domain: \[1, 64\].
+    /// Near cells whose trees are made ready at once, and tiles whose impostors are. domain: \[1, 64\].
     pub cells_at_once: u32,
     /// Trees that come in a frame, at most. domain: \[1, 100000\].
     pub trees_per_frame: u32,

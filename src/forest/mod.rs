@@ -3,12 +3,15 @@
 //! - [`Forest`] stands on a [`Terrain`](crate::terrain::Terrain), on ground of your own ([`ForestGround`]), or on the level.
 //! - `begin` makes a forest's plan ready, when it is new or has changed.
 //! - `cells` plants the forest's voxel grid ([`CellStore`](crate::cells::CellStore)) in the background, as far as trees are
-//!   drawn at all; what nobody is near to goes again. Ask [`ForestCells::store`] who stands where.
+//!   drawn at all, one `planted_tile` after another; what nobody is near to goes again. Ask [`ForestCells::store`] who stands where. Near
+//!   trees and impostors take the plants of a tile when it comes.
 //! - `near` and `stream_trees` spawn the plants of near cells as [`Tree`](crate::tree::Tree)s, a few a frame. What stands where follows from
 //!   the plan alone, in whatever order cells come. When the plan changes, trees that both plans have stay.
 //! - `near_services` gives cells a wind of their own and the nearest trees beams and leaves as entities, where that is asked for.
+//! - `missing_species` tells which species of a plan cannot be loaded.
 //! - With the feature `render`, `impostors` draws the trees beyond, a tile of cells at a time.
-//! - With it, too, `cull` hides near cells out of view, and `diagnose` tells how the forest does.
+//! - With it, too, `cull` hides near cells out of view, `layers` gives trees and impostors the render layers of their forest, and `diagnose`
+//!   tells how the forest does.
 //! - [`PlanCover`] tells the ground where the woods are, so that they are seen beyond the last tree.
 
 mod begin;
@@ -22,8 +25,13 @@ mod diagnose;
 mod extent;
 #[cfg(feature = "render")]
 mod impostors;
+#[cfg(feature = "render")]
+mod layers;
+mod missing_species;
 mod near;
+mod near_cell;
 mod near_services;
+mod planted_tile;
 mod plugin;
 mod reach;
 mod stream_trees;

@@ -3,55 +3,53 @@
 use super::{
     components::{ForestCell, ForestSettings},
     extent::Extent,
+    near_cell::{NearCell, NearTree, tree},
+    planted_tile::PlantedTile,
     reach::reaching,
 };
 use crate::{
     cells::{CellSet, CellStream, Orders, StreamSettings, ViewerPose},
     scatter::Planted,
     setting::SettingError,
-    tree::{Species, Tree},
+    tree::Species,
 };
 use bevy::{
     platform::collections::HashMap,
     prelude::*,
     tasks::{Task, block_on, poll_once},
 };
+use std::sync::Arc;
 
 /// Side of a common cell, m.
 const COMMON_CELL_M: f32 = 64.0;
 
+/// A cell that is planted alone.
+pub(super) type CellTask = Task<Vec<Planted>>;
+
+/// Where the plants of a cell come from.
+enum Planting {
+    /// From its tile, which is being planted, or has just been.
+    Tile,
+    /// Planted again, since its tile is known and gone.
+    Alone(CellTask),
+}
+
 /// The near cells of a forest.
 pub(super) struct NearTrees {
     cell_m: f32,
+    /// Cells along a side of a tile.
+    tile_cells: i32,
     stream: CellStream,
     orders: Orders,
-    planting: Vec<(IVec2, Task<Vec<Planted>>)>,
+    planting: Vec<(IVec2, Planting)>,
+    /// Tiles that came while near cells of them were missing, until none is.
+    tiles: HashMap<IVec2, Arc<PlantedTile>>,
     cells: HashMap<IVec2, NearCell>,
     /// Cells whose trees are still to be spawned, in that order.
     unspawned: Vec<IVec2>,
     changes: u64,
-}
-
-struct NearCell {
-    entity: Entity,
-    /// What is still to be spawned.
-    planted: Vec<Planted>,
-    spawned: Vec<NearTree>,
-    /// Trees of the plan before, which go when all of this one are drawn.
-    outdated: Vec<Entity>,
-    /// Whether it is of the plan before.
-    is_outdated: bool,
-    /// Whether all of its trees are drawn.
-    is_drawn: bool,
-    extent: Extent,
-    is_articulated: bool,
-}
-
-/// A tree of a near cell, and the plant that it is.
-struct NearTree {
-    plant: Planted,
-    species: AssetId<Species>,
-    entity: Entity,
+    /// Grows whenever the set of drawn cells may have changed.
+    drawn_changes: u64,
 }
 
 /// The cells that are up to date.
@@ -68,7 +66,12 @@ impl CellSet for UpToDate<'_> {
 }
 
 impl NearTrees {
-    pub fn new(settings: &ForestSettings, cell_m: f32, bounds: Option<[IVec2; 2]>) -> Result<Self, SettingError> {
+    pub fn new(
+        settings: &ForestSettings,
+        cell_m: f32,
+        tile_cells: i32,
+        bounds: Option<[IVec2; 2]>,
+    ) -> Result<Self, SettingError> {
         let at_once = settings.cells_at_once;
         // To clear a cell takes as long as to fill one, and nothing waits for it: in a frame no more ground than a common cell's, which
         // keeps up with any flight.
@@ -81,12 +84,15 @@ impl NearTrees {
         };
         Ok(Self {
             cell_m,
+            tile_cells,
             stream: CellStream::new(stream, cell_m, bounds)?,
             orders: Orders::default(),
             planting: Vec::new(),
+            tiles: HashMap::default(),
             cells: HashMap::default(),
             unspawned: Vec::new(),
             changes: 0,
+            drawn_changes: 0,
         })
     }
 
@@ -97,6 +103,7 @@ impl NearTrees {
             return before.entities().collect();
         }
         self.changes = before.changes + 1;
+        self.drawn_changes = before.drawn_changes + 1;
         self.cells = std::mem::take(&mut before.cells);
         for cell in self.cells.values_mut() {
             cell.is_outdated = true;
@@ -105,10 +112,25 @@ impl NearTrees {
         Vec::new()
     }
 
-    /// Finds out which cells are wanted from where the viewers are, and has those planted that are missing.
-    pub fn follow(&mut self, viewers: &[ViewerPose], plant: impl Fn(IVec2) -> Task<Vec<Planted>>) {
+    /// Takes a tile that has been planted, if near cells of it are missing.
+    pub fn offer(&mut self, place: IVec2, tile: &Arc<PlantedTile>) {
+        if !self.stream.is_complete() && tile.cells().any(|(cell, _)| self.stream.keeps(cell)) {
+            self.tiles.insert(place, tile.clone());
+        }
+    }
+
+    /// Finds out which cells are wanted from where the viewers are. Those that are missing come with their tile; where that has come before
+    /// and is gone, `plant` has the cell planted again.
+    pub fn follow(&mut self, viewers: &[ViewerPose], plant: impl Fn(IVec2) -> Option<CellTask>) {
         self.stream.step(viewers, &UpToDate(&self.cells), &mut self.orders);
-        self.planting.extend(self.orders.plant.iter().map(|cell| (*cell, plant(*cell))));
+        for cell in &self.orders.plant {
+            let tile = cell.div_euclid(IVec2::splat(self.tile_cells));
+            let alone = if self.tiles.contains_key(&tile) { None } else { plant(*cell) };
+            self.planting.push((*cell, alone.map_or(Planting::Tile, Planting::Alone)));
+        }
+        if self.stream.is_complete() {
+            self.tiles.clear();
+        }
     }
 
     pub fn is_complete(&self) -> bool {
@@ -123,6 +145,25 @@ impl NearTrees {
     #[cfg(feature = "render")]
     pub fn drawn_cells(&self) -> impl Iterator<Item = IVec2> {
         self.cells.iter().filter(|(_, cell)| cell.is_drawn).map(|(cell, _)| *cell)
+    }
+
+    /// Whether all trees of a near cell are drawn.
+    #[cfg(feature = "render")]
+    pub fn is_drawn(&self, cell: IVec2) -> bool {
+        self.cells.get(&cell).is_some_and(|cell| cell.is_drawn)
+    }
+
+    /// Grows whenever the set of drawn cells may have changed.
+    #[cfg(feature = "render")]
+    pub fn drawn_changes(&self) -> u64 {
+        self.drawn_changes
+    }
+
+    /// Every tree that is spawned.
+    #[cfg(feature = "render")]
+    pub fn trees(&self) -> impl Iterator<Item = Entity> {
+        let outdated = self.cells.values().flat_map(|cell| cell.outdated.iter().copied());
+        self.cells.values().flat_map(|cell| cell.spawned.iter().map(|tree| tree.entity)).chain(outdated)
     }
 
     /// Grows whenever a cell comes or goes.
@@ -161,9 +202,17 @@ impl NearTrees {
 
     /// Takes over cells that have been planted.
     pub fn receive(&mut self, forest: Entity, species: &[Handle<Species>], commands: &mut Commands) {
-        let Self { planting, cells, unspawned, stream, changes, .. } = self;
-        planting.retain_mut(|(cell, task)| {
-            let Some(planted) = block_on(poll_once(task)) else { return true };
+        let Self { planting, tiles, tile_cells, cells, unspawned, stream, changes, drawn_changes, .. } = self;
+        planting.retain_mut(|(cell, source)| {
+            let planted = match source {
+                Planting::Alone(task) => block_on(poll_once(task)),
+                Planting::Tile => {
+                    let tile = tiles.get(&cell.div_euclid(IVec2::splat(*tile_cells)));
+                    // One that nobody wants any more is waited for no longer.
+                    tile.map(|tile| tile.cell(*cell).to_vec()).or_else(|| (!stream.keeps(*cell)).then(Vec::new))
+                }
+            };
+            let Some(planted) = planted else { return true };
             if !stream.fulfil(*cell) {
                 return false;
             }
@@ -179,6 +228,7 @@ impl NearTrees {
             }
             cells.insert(*cell, near);
             *changes += 1;
+            *drawn_changes += 1;
             false
         });
     }
@@ -193,6 +243,7 @@ impl NearTrees {
             if let Some(there) = self.cells.remove(cell) {
                 commands.entity(there.entity).despawn();
                 self.changes += 1;
+                self.drawn_changes += 1;
                 self.unspawned.retain(|unspawned| unspawned != cell);
             }
         }
@@ -203,25 +254,28 @@ impl NearTrees {
         for cell in self.cells.values_mut().filter(|cell| !cell.is_drawn && cell.planted.is_empty()) {
             cell.is_drawn = cell.spawned.iter().all(|tree| is_drawn(tree.entity));
             if cell.is_drawn {
+                self.drawn_changes += 1;
                 cell.outdated.drain(..).for_each(|tree| commands.entity(tree).despawn());
             }
         }
     }
 
-    /// Spawns trees, as many as a frame may.
-    pub fn spawn(&mut self, settings: &ForestSettings, species: &[Handle<Species>], commands: &mut Commands) {
-        let mut left = settings.trees_per_frame as usize;
+    /// Spawns trees, as many as a frame may. `mark` gives each what its forest gives to all.
+    pub fn spawn(
+        &mut self,
+        trees_per_frame: u32,
+        species: &[Handle<Species>],
+        mark: impl Fn(&mut EntityCommands),
+        commands: &mut Commands,
+    ) {
+        let mut left = trees_per_frame as usize;
         while let Some(cell) = self.unspawned.first().and_then(|cell| self.cells.get_mut(cell)).filter(|_| left > 0) {
             let rest = cell.planted.len().saturating_sub(left);
             left -= cell.planted.len() - rest;
             for plant in cell.planted.drain(rest..) {
                 let handle = &species[usize::from(plant.species)];
-                #[cfg_attr(not(feature = "render"), expect(unused_mut))]
                 let mut tree = commands.spawn((tree(&plant, handle.clone()), ChildOf(cell.entity)));
-                #[cfg(feature = "render")]
-                if settings.far_to_m > 0.0 {
-                    tree.insert(crate::render::instances::components::HasImpostor);
-                }
+                mark(&mut tree);
                 cell.spawned.push(NearTree { plant, species: handle.id(), entity: tree.id() });
             }
             if cell.planted.is_empty() {
@@ -229,50 +283,4 @@ impl NearTrees {
             }
         }
     }
-}
-
-impl NearCell {
-    fn new(entity: Entity, planted: Vec<Planted>) -> Self {
-        Self {
-            entity,
-            extent: Extent::of(&planted),
-            is_drawn: planted.is_empty(),
-            planted,
-            spawned: Vec::new(),
-            outdated: Vec::new(),
-            is_outdated: false,
-            is_articulated: false,
-        }
-    }
-
-    /// The same cell of another plan: trees that both have stay.
-    fn planted_anew(mut self, planted: Vec<Planted>, species: &[Handle<Species>]) -> Self {
-        let mut before = std::mem::take(&mut self.spawned);
-        let mut cell = Self { outdated: std::mem::take(&mut self.outdated), ..Self::new(self.entity, planted) };
-        cell.planted.retain(|plant| {
-            let id = species[usize::from(plant.species)].id();
-            let is_same =
-                |tree: &NearTree| tree.species == id && Planted { species: plant.species, ..tree.plant } == *plant;
-            let Some(place) = before.iter().position(is_same) else { return true };
-            cell.spawned.push(NearTree { plant: *plant, ..before.swap_remove(place) });
-            false
-        });
-        cell.outdated.extend(before.into_iter().map(|tree| tree.entity));
-        cell.is_drawn = cell.planted.is_empty() && cell.outdated.is_empty();
-        cell
-    }
-}
-
-fn tree(plant: &Planted, species: Handle<Species>) -> impl Bundle {
-    let place = Transform::from_translation(plant.position)
-        .with_rotation(Quat::from_rotation_y(plant.turn_rad))
-        .with_scale(Vec3::splat(plant.vigour));
-    (
-        Tree::new(species)
-            .with_age(plant.age_years)
-            .with_seed(u64::from(plant.seed))
-            .with_season(plant.season_days)
-            .with_tint(plant.tint),
-        place,
-    )
 }

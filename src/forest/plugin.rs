@@ -4,6 +4,7 @@ use super::{
     begin::begin_forests,
     cells::{ForestCells, plant_cells},
     components::{Forest, ForestCell, ForestSettings},
+    missing_species::{MissingPlanSpecies, report_missing_plan_species},
     near_services::{articulate_near_trees, spawn_wind_cells},
     stream_trees::stream_trees,
 };
@@ -31,10 +32,19 @@ impl Plugin for ForestPlugin {
         app.init_asset::<ForestPlan>()
             .init_asset_loader::<RonLoader<ForestPlan>>()
             .register_asset_reflect::<ForestPlan>()
+            .add_message::<MissingPlanSpecies>()
             .register_type::<Forest>()
             .register_type::<ForestSettings>()
             .add_observer(remove_made::<Forest, ForestCell, ForestCells>);
-        let stream = timed!(app, begin_forests, plant_cells, stream_trees, spawn_wind_cells, articulate_near_trees);
+        let stream = timed!(
+            app,
+            begin_forests,
+            report_missing_plan_species,
+            plant_cells,
+            stream_trees,
+            spawn_wind_cells,
+            articulate_near_trees
+        );
         app.add_systems(Update, stream.chain().in_set(WindwoodSystems::Stream));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::cells::ForestCells;
 use crate::{cells::ViewerPose, viewpoint::Viewpoints};
-use bevy::{ecs::system::SystemParam, prelude::*, tasks::AsyncComputeTaskPool};
+use bevy::{ecs::system::SystemParam, prelude::*};
 
 /// Which trees are drawn. Where nothing draws, all count as drawn.
 #[derive(SystemParam)]
@@ -30,29 +30,42 @@ impl DrawnTrees<'_, '_> {
     }
 }
 
+/// The render layers of a forest, where anything is drawn.
+#[cfg(feature = "render")]
+type Layers = Option<&'static bevy::camera::visibility::RenderLayers>;
+#[cfg(not(feature = "render"))]
+type Layers = ();
+
 /// Keeps trees about the viewers: they come nearest first, and go a cell or so a frame.
 pub(super) fn stream_trees(
     mut commands: Commands,
     viewpoints: Viewpoints,
     drawn: DrawnTrees,
     mut places: Local<Vec<ViewerPose>>,
-    mut forests: Query<(Entity, &mut ForestCells)>,
+    mut forests: Query<(Entity, &mut ForestCells, Layers)>,
 ) {
     viewpoints.fill(&mut places);
-    for (entity, mut forest) in &mut forests {
-        let (planter, ground) = (forest.shared_planter(), forest.ground());
-        let (near, species, settings) = forest.parts();
+    for (entity, mut forest, layers) in &mut forests {
+        #[cfg(feature = "render")]
+        let impostor = forest.impostor();
+        let give = |tree: &mut EntityCommands| {
+            #[cfg(feature = "render")]
+            {
+                if let Some(impostor) = impostor {
+                    tree.insert(impostor);
+                }
+                if let Some(layers) = layers {
+                    tree.insert(layers.clone());
+                }
+            }
+            #[cfg(not(feature = "render"))]
+            let ((), _) = (layers, tree);
+        };
+        let (near, species, settings, plant) = forest.parts();
         near.receive(entity, species, &mut commands);
-        near.follow(&places, |cell| {
-            let (planter, ground) = (planter.clone(), ground.clone());
-            AsyncComputeTaskPool::get().spawn(async move {
-                let mut planted = Vec::new();
-                planter.plant(cell, &ground, &mut planted);
-                planted
-            })
-        });
+        near.follow(&places, plant);
         near.clear(&mut commands);
         near.note_drawn(|tree| drawn.contains(tree), &mut commands);
-        near.spawn(settings, species, &mut commands);
+        near.spawn(settings.trees_per_frame, species, give, &mut commands);
     }
 }

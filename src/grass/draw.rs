@@ -6,7 +6,7 @@ use super::{
     mesh::{bounds, still_mesh, swaying_mesh},
 };
 use crate::{
-    plugin_checks::has_renderer,
+    plugin_checks::{has_renderer, require_renderer_before},
     render::{RenderCapabilities, SwayBuffers},
 };
 use bevy::{
@@ -38,6 +38,10 @@ impl Plugin for GrassDrawPlugin {
                 .after(super::components::finish_meadow_layouts)
                 .run_if(can_draw),
         );
+    }
+
+    fn finish(&self, app: &mut App) {
+        require_renderer_before::<Self>(app, app.is_plugin_added::<MaterialPlugin<GrassMaterial>>());
     }
 }
 

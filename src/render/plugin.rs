@@ -23,7 +23,6 @@ use super::{
     },
     lighting::{TreeLighting, TreeLights, find_lights, update_material_lights},
     lod::{
-        impostor_range::ImpostorRange,
         select::select_lods,
         thresholds::LodSelection,
         viewers::{LodViewers, update_lod_viewers},
@@ -66,7 +65,6 @@ impl Plugin for TreeRenderPlugin {
             .init_resource::<LevelOfDetail>()
             .init_resource::<ActiveLevelOfDetail>()
             .init_resource::<LodViewers>()
-            .init_resource::<ImpostorRange>()
             .init_resource::<WindExposure>()
             .init_resource::<TreeLighting>()
             .init_resource::<TreeLights>()

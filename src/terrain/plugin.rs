@@ -6,7 +6,7 @@ use super::{
     material::GroundMaterial,
 };
 use crate::{
-    plugin_checks::has_renderer,
+    plugin_checks::{has_renderer, require_renderer_before},
     removal::remove_made,
     schedule::{WindwoodSystems, configure_sets},
     timing::timed,
@@ -33,5 +33,9 @@ impl Plugin for TerrainDrawPlugin {
             .add_observer(remove_made::<Terrain, TerrainChunk, TerrainChunks>);
         let stream = timed!(app, begin_terrains, recolour_ground, stream_ground);
         app.add_systems(Update, stream.chain().in_set(WindwoodSystems::Stream));
+    }
+
+    fn finish(&self, app: &mut App) {
+        require_renderer_before::<Self>(app, app.world().contains_resource::<GroundTexture>());
     }
 }

@@ -54,6 +54,7 @@ mod wood_mesh;
 pub(crate) use bounds::PressureStep;
 pub use bounds::SwayBounds;
 pub use components::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Tree, TreeBeams, TreeLeaves};
+pub(crate) use ecs::missing_species::ReportedSpecies;
 pub use ecs::{
     season::Season,
     species_models::{BakedSpecies, BakedStage, SpeciesBaked, SpeciesModels, bake_variants},

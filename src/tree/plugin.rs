@@ -4,7 +4,7 @@ use super::{
     components::{Articulated, Beam, Leaf, Tree},
     ecs::{
         grow_trees::{grow_trees, is_time_to_search, regrow_trees},
-        missing_species::{MissingSpecies, report_missing_species},
+        missing_species::{MissingSpecies, ReportedSpecies, report_missing_species},
         season::Season,
         species_models::{SpeciesBaked, SpeciesModels, store_baked_models, update_species},
     },
@@ -37,6 +37,7 @@ impl Plugin for TreePlugin {
             .register_type::<Season>()
             .init_resource::<Season>()
             .init_resource::<SpeciesModels>()
+            .init_resource::<ReportedSpecies>()
             .add_message::<SpeciesBaked>()
             .add_message::<MissingSpecies>();
         let grow = timed!(app, update_species, store_baked_models, grow_trees, report_missing_species);

@@ -60,8 +60,8 @@ pub fn draw_firs(limits: WgpuLimits) -> Outcome {
     let picture = capture::capture(&mut app, &target, SIZE).expect("the picture comes back");
     let posed = rows.map_or(0, |rows| {
         let rows = rows.lock().expect("the lock is not poisoned").take().expect("the rows come back");
-        // A `TreeRow` of `instances.wesl` has 48 bytes. Its number of beams is the tenth word.
-        rows.chunks_exact(48).filter(|row| row[36..40] != [0; 4]).count()
+        // A `TreeRow` of `instances.wesl` has 64 bytes. Its number of beams is the tenth word.
+        rows.chunks_exact(64).filter(|row| row[36..40] != [0; 4]).count()
     });
     let world = app.world_mut();
     type Still = With<MeshMaterial3d<StandardMaterial>>;

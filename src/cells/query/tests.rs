@@ -66,7 +66,7 @@ fn stems_within_a_radius_equal_a_search_of_all() {
 fn cast_slowly(stems: &[(IVec2, usize, Stem)], origin: Vec3, direction: Vec3, longest_m: f32) -> Option<f64> {
     let direction = direction.as_dvec3().normalize();
     let hit = |(_, _, stem): &(IVec2, usize, Stem)| {
-        let trunk = TRUNKS[usize::from(stem.species)].of_size(stem.size);
+        let trunk = TRUNKS[usize::from(stem.species)].of_size(stem.plan_size);
         trunk.hit(origin.as_dvec3() - stem.position.as_dvec3(), direction)
     };
     stems.iter().filter_map(hit).filter(|&hit_m| hit_m <= f64::from(longest_m)).reduce(f64::min)
@@ -113,7 +113,7 @@ fn a_trunk_on_a_border_is_hit_from_the_neighbouring_cell() {
         planted.push(crate::scatter::Planted {
             position: Vec3::new(x, 0.0, 20.0),
             turn_rad: 0.0,
-            size: 1.0,
+            plan_size: 1.0,
             vigour: 1.0,
             age_years: 80.0,
             season_days: 0.0,

@@ -6,7 +6,8 @@ use bevy::math::DVec3;
 /// Nothing that grows is larger, m.
 const LARGEST_M: f32 = 1000.0;
 
-/// The trunk of a full-grown tree of a species; smaller trees have it in proportion.
+/// The trunk of a full-grown tree of a species. Other trees have it in proportion to their
+/// [`plan_size`](crate::scatter::Planted::plan_size).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Trunk {
     /// Radius at the ground, m.

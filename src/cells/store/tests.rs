@@ -18,7 +18,7 @@ pub(in crate::cells) fn cell_of(cell: IVec2, plants: usize, relief_m: f32, seed:
         planted.push(Planted {
             position: Vec3::new(x, relief_m * random.random_range(-1.0..=1.0_f32), z),
             turn_rad: random.random_range(0.0..std::f32::consts::TAU),
-            size: random.random_range(0.2..1.4),
+            plan_size: random.random_range(0.2..1.4),
             vigour: 1.0,
             age_years: 80.0,
             season_days: random.random_range(-9.0..9.0),
@@ -60,7 +60,7 @@ fn a_cell_sums_up_its_plants() {
     let heights = || stems.iter().map(|stem| stem.position.y);
     let [lowest_m, highest_m] = cell.ground_m().unwrap();
     assert_eq!((lowest_m, highest_m), (heights().fold(99.0, f32::min), heights().fold(-99.0, f32::max)));
-    let largest = stems.iter().map(|stem| stem.size).fold(0.0, f32::max);
+    let largest = stems.iter().map(|stem| stem.plan_size).fold(0.0, f32::max);
     assert!((cell.largest() - largest).abs() < 1e-4);
     assert_eq!(Cell::pack(&[], corner_m, CELL_M).ground_m(), None);
 }

@@ -1,35 +1,56 @@
-//! Tells the shader of impostors which cells' trees are drawn as entities.
+//! Tells trees from where on impostors stand for them, and the shader of impostors which cells' trees are drawn as entities.
 
 use super::tiles::ForestImpostors;
 use crate::{
     forest::cells::ForestCells,
-    render::{impostors::near_mask::NearMask, lod::impostor_range::ImpostorRange},
-    viewpoint::Viewpoints,
+    render::{
+        buffers::table_uploads::TableUploads, impostors::near_mask::NearMasks, instances::components::HasImpostor,
+        lod::viewers::LodViewers,
+    },
 };
-use bevy::{prelude::*, render::storage::ShaderBuffer};
+use bevy::prelude::*;
 
 /// Trees give way to impostors at this share, at the latest, of the distance to which all of them stand as entities: the fade must end
 /// before it.
 const TREES_END_AT: f32 = 0.88;
 
-/// Uploads which cells are drawn, where that has changed.
-pub(super) fn update_near_mask(
-    mut mask: ResMut<NearMask>,
-    mut buffers: ResMut<Assets<ShaderBuffer>>,
-    viewpoints: Viewpoints,
-    mut impostors: ResMut<ImpostorRange>,
-    forests: Query<(&ForestCells, Option<&ForestImpostors>)>,
+/// Writes where that has changed: forest by forest, since each has cells and distances of its own.
+pub(super) fn update_near_masks(
+    mut commands: Commands,
+    mut masks: ResMut<NearMasks>,
+    mut uploads: TableUploads,
+    mut viewers: ResMut<LodViewers>,
+    mut forests: Query<(&mut ForestCells, Option<&mut ForestImpostors>)>,
 ) {
-    let Some((forest, tiles)) = forests.iter().next() else { return };
-    // Trees do not fade before there is something to stand for them.
-    let is_complete = tiles.is_some_and(ForestImpostors::is_complete);
-    let from_m = if is_complete {
-        Some(TREES_END_AT * forest.settings().trees_to_m)
-    } else {
-        impostors.from_m.filter(|_| tiles.is_some())
-    };
-    impostors.set_if_neq(ImpostorRange { from_m });
-    let Some(centre) = viewpoints.iter().next().map(|eye| forest.planter().cell_at(eye.xz())) else { return };
-    let (cell_m, far_to_m) = (forest.planter().cell_m(), forest.settings().far_to_m);
-    mask.update(centre, cell_m, far_to_m, forest.near.drawn_cells(), &mut buffers);
+    for (mut forest, mut tiles) in &mut forests {
+        let settings = forest.settings();
+        // Trees do not fade before there is something to stand for them.
+        let from_m = match &tiles {
+            Some(tiles) if tiles.is_complete() => Some(TREES_END_AT * settings.trees_to_m),
+            Some(_) => forest.impostors_from_m,
+            None => None,
+        };
+        if forest.impostors_from_m != from_m {
+            forest.impostors_from_m = from_m;
+            viewers.is_due = true;
+            for tree in forest.near.trees() {
+                commands.entity(tree).try_insert(HasImpostor { from_m });
+            }
+        }
+        if let Some(tiles) = &mut tiles {
+            tiles.mark_near_cells(&forest, &mut masks);
+        }
+    }
+    masks.upload(&mut uploads);
+}
+
+/// Gives the masks of tiles back that go with their forest, or whose forest begins anew.
+pub(super) fn free_near_masks(
+    discarded: On<Discard<ForestImpostors>>,
+    mut forests: Query<&mut ForestImpostors>,
+    mut masks: ResMut<NearMasks>,
+) {
+    if let Ok(mut tiles) = forests.get_mut(discarded.entity) {
+        tiles.take_masks().for_each(|mask| masks.remove(mask));
+    }
 }

@@ -1,7 +1,7 @@
 //! Registers the drawing of forests.
 
 use super::{
-    near_mask::update_near_mask,
+    near_mask::{free_near_masks, update_near_masks},
     species::{ImpostorSpeciesLibrary, bake_impostor_species},
     tiles::{ForestImpostors, ImpostorTile, stream_impostor_tiles},
 };
@@ -11,14 +11,16 @@ use crate::{
         cells::plant_cells,
         cull::{ForestCulling, cull_cells, measure_species},
         diagnose::ForestGizmoPlugin,
+        layers::copy_forest_layers,
+        stream_trees::stream_trees,
     },
-    plugin_checks::has_renderer,
+    plugin_checks::{has_renderer, require_renderer_before},
     removal::remove_made,
     render::{
         RenderCapabilities,
         impostors::{
             material::{ImpostorExtension, ImpostorMaterial},
-            near_mask::NearMask,
+            near_mask::NearMasks,
         },
         lighting::{TreeLights, update_material_lights},
     },
@@ -37,6 +39,7 @@ impl Plugin for ForestRenderPlugin {
         app.add_plugins(ForestGizmoPlugin)
             .register_type::<ForestCulling>()
             .init_resource::<ForestCulling>()
+            .add_systems(Update, copy_forest_layers.after(stream_trees))
             .add_systems(PostUpdate, cull.chain().in_set(WindwoodSystems::Cull));
         if !has_renderer(app) {
             return;
@@ -44,12 +47,17 @@ impl Plugin for ForestRenderPlugin {
         let can_draw = resource_exists::<RenderCapabilities>;
         app.add_plugins(MaterialPlugin::<ImpostorMaterial>::default())
             .add_observer(remove_made::<Forest, ImpostorTile, ForestImpostors>)
-            .init_resource::<NearMask>()
+            .add_observer(free_near_masks)
+            .init_resource::<NearMasks>()
             .init_resource::<ImpostorSpeciesLibrary>();
         let stream = timed!(app, bake_impostor_species, stream_impostor_tiles);
-        let mask = timed!(app, update_near_mask);
+        let mask = timed!(app, update_near_masks);
         app.add_systems(Update, stream.chain().after(plant_cells).run_if(can_draw))
             .add_systems(Update, update_material_lights::<ImpostorExtension>.run_if(resource_changed::<TreeLights>))
             .add_systems(PostUpdate, mask.before(WindwoodSystems::Upload));
+    }
+
+    fn finish(&self, app: &mut App) {
+        require_renderer_before::<Self>(app, app.world().contains_resource::<NearMasks>());
     }
 }

@@ -8,7 +8,7 @@ use crate::{
         impostors::{
             material::{AtlasImages, ImpostorMaterial, impostor_material},
             mesh::MAX_VARIANTS,
-            near_mask::NearMask,
+            near_mask::NearMasks,
         },
         lighting::{LitAsTrees, TreeLights},
         settings::ActiveLevelOfDetail,
@@ -16,6 +16,7 @@ use crate::{
     tree::{Species, TreeModel, bake_variants, growth::age::Age, textures::species_textures},
 };
 use bevy::{
+    asset::LoadState,
     platform::collections::HashMap,
     prelude::*,
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
@@ -50,6 +51,11 @@ struct Baked {
 impl ImpostorSpeciesLibrary {
     pub fn get(&self, id: AssetId<Species>) -> Option<&ImpostorSpecies> {
         self.species.get(&id)
+    }
+
+    /// Whether its atlas is baked, or the species cannot be loaded.
+    pub fn is_settled(&self, species: &Handle<Species>, assets: &AssetServer) -> bool {
+        self.species.contains_key(&species.id()) || matches!(assets.get_load_state(species), Some(LoadState::Failed(_)))
     }
 
     /// Whether its atlas is baked or being baked.
@@ -100,7 +106,7 @@ pub(super) fn bake_impostor_species(
     buffers: Res<SwayBuffers>,
     capabilities: Res<RenderCapabilities>,
     lights: Res<TreeLights>,
-    near_mask: Res<NearMask>,
+    near_masks: Res<NearMasks>,
     detail: Res<ActiveLevelOfDetail>,
     species: Res<Assets<Species>>,
     forests: Query<&ForestCells>,
@@ -137,7 +143,7 @@ pub(super) fn bake_impostor_species(
     baking.retain_mut(|(id, task)| {
         let Some(Baked { species, atlas }) = block_on(poll_once(task)) else { return true };
         let (frame, shown_variants) = (atlas.frame, atlas.variants);
-        let mut material = impostor_material(&species, atlas, &mut images, &buffers, near_mask.buffer.clone());
+        let mut material = impostor_material(&species, atlas, &mut images, &buffers, near_masks.buffer.clone());
         *material.extension.lights_mut() = *lights;
         // Wherever it leans.
         let reach_m = frame.centre.length() + frame.radius_m + frame.half_height_m;

@@ -1,61 +1,49 @@
-//! Tiles of impostors: blocks of cells about the viewers, planted in the background, each drawn as one mesh a species.
+//! Tiles of impostors: of each tile of cells that is planted, one mesh a species.
 
-use super::species::{ImpostorSpecies, ImpostorSpeciesLibrary};
+use super::{
+    species::ImpostorSpeciesLibrary,
+    tile_mesh::{ImpostorShape, TileMesh, tile_meshes},
+};
 use crate::{
-    cells::{CellStream, Orders, StreamSettings, ViewerPose},
-    forest::{cells::ForestCells, reach::reaching},
+    forest::cells::ForestCells,
     render::{
         RenderCapabilities,
         draw::layers::insert_layers_and_culling,
-        impostors::mesh::{ImpostorInstance, impostor_mesh},
+        impostors::near_mask::{MaskRange, NearMask, NearMasks},
     },
-    scatter::Planted,
-    setting::SettingError,
-    tree::{Tree, growth::age::Age},
-    viewpoint::Viewpoints,
+    tree::Species,
 };
 use bevy::{
-    camera::{
-        primitives::Aabb,
-        visibility::{NoAutoAabb, RenderLayers},
-    },
-    platform::collections::HashMap,
+    camera::visibility::{NoAutoAabb, RenderLayers},
+    platform::collections::{HashMap, HashSet},
     prelude::*,
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
 };
-
-/// Cells along a side of a tile, at least.
-const MIN_CELLS: i32 = 4;
-/// No more tiles than this from a viewer to the border: a wide view has larger tiles, not more draws.
-const TILES_TO_BORDER: f32 = 20.0;
+use std::sync::Arc;
 
 /// The trees of a [`Forest`](crate::forest::Forest) that are drawn as impostors, tile by tile.
 #[derive(Component)]
 pub struct ForestImpostors {
-    /// The forest's generation that they are of.
-    generation: u64,
-    /// Cells along a side of a tile: a power of two.
+    /// The forest's [`ForestCells::tiles_since`] that they are of.
+    tiles_since: u64,
+    /// Cells along a side of a tile.
     cells: i32,
-    stream: CellStream,
-    orders: Orders,
-    planting: Vec<(IVec2, Task<Vec<TileMesh>>)>,
+    /// How many of the forest's species they lack, which cannot be loaded.
+    lacking_species: usize,
+    making: Vec<(IVec2, Task<Vec<TileMesh>>)>,
     tiles: HashMap<IVec2, Tile>,
+    is_complete: bool,
+    /// The near cells that are marked in the masks of the tiles, and what these were last written for.
+    marked: HashSet<IVec2>,
+    marked_for: Option<(u64, MaskRange)>,
 }
 
-#[derive(Default)]
 struct Tile {
     /// One mesh a species.
     meshes: Vec<Entity>,
+    mask: NearMask,
     trees: usize,
     bytes: usize,
-}
-
-/// The trees of one species in a tile.
-struct TileMesh {
-    species: usize,
-    mesh: Mesh,
-    bounds: Aabb,
-    trees: usize,
 }
 
 /// A mesh of a tile; a child of the forest.
@@ -63,35 +51,23 @@ struct TileMesh {
 pub(super) struct ImpostorTile;
 
 impl ForestImpostors {
-    fn new(forest: &ForestCells) -> Result<Self, SettingError> {
-        let (planter, settings) = (forest.planter(), forest.settings());
-        let mut cells = MIN_CELLS;
-        while settings.far_to_m > TILES_TO_BORDER * cells as f32 * planter.cell_m() && cells < 64 {
-            cells *= 2;
-        }
-        let side_m = planter.cell_m() * cells as f32;
-        let at_once = settings.cells_at_once;
-        let stream = StreamSettings {
-            plants_per_step: at_once,
-            most_ordered: at_once,
-            drops_per_step: 4,
-            ..reaching(settings.far_to_m, side_m)
-        };
-        let bounds = planter.cells().map(|cell| cell.map(|cell| cell.div_euclid(IVec2::splat(cells))));
-        Ok(Self {
-            generation: forest.generation(),
-            cells,
-            stream: CellStream::new(stream, side_m, bounds)?,
-            orders: Orders::default(),
-            planting: Vec::new(),
+    fn new(forest: &ForestCells) -> Self {
+        Self {
+            tiles_since: forest.tiles_since(),
+            cells: forest.tile_cells(),
+            lacking_species: 0,
+            making: Vec::new(),
             tiles: HashMap::default(),
-        })
+            is_complete: false,
+            marked: HashSet::default(),
+            marked_for: None,
+        }
     }
 
     /// Whether every tile that is wanted from where the viewers are is drawn.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.stream.is_complete()
+        self.is_complete
     }
 
     /// Trees that have impostors, near ones among them.
@@ -106,117 +82,96 @@ impl ForestImpostors {
         self.tiles.values().map(|tile| tile.bytes).sum()
     }
 
-    fn meshes(&self) -> impl Iterator<Item = Entity> {
+    /// The entities of all of its meshes.
+    pub(in crate::forest) fn meshes(&self) -> impl Iterator<Item = Entity> {
         self.tiles.values().flat_map(|tile| tile.meshes.iter().copied())
+    }
+
+    /// Takes the masks out of all tiles.
+    pub(super) fn take_masks(&mut self) -> impl Iterator<Item = NearMask> {
+        self.tiles.values_mut().map(|tile| std::mem::take(&mut tile.mask))
+    }
+
+    /// Marks those near cells in the masks of their tiles that all of their trees are drawn of, and writes the distances of its forest,
+    /// where that has changed.
+    pub(super) fn mark_near_cells(&mut self, forest: &ForestCells, masks: &mut NearMasks) {
+        let range = forest.mask_range();
+        let wanted = Some((forest.near.drawn_changes(), range));
+        if self.marked_for == wanted || self.tiles_since != forest.tiles_since() {
+            return;
+        }
+        let Self { cells, tiles, marked, .. } = self;
+        if self.marked_for.is_none_or(|(_, before)| before != range) {
+            tiles.values().for_each(|tile| masks.set_range(&tile.mask, range));
+        }
+        self.marked_for = wanted;
+        let mut set = |cell: IVec2, is_near| {
+            let place = cell.div_euclid(IVec2::splat(*cells));
+            if let Some(tile) = tiles.get(&place) {
+                masks.set(&tile.mask, (cell - place * *cells).as_uvec2(), is_near);
+            }
+        };
+        marked.retain(|cell| {
+            let stays = forest.near.is_drawn(*cell);
+            if !stays {
+                set(*cell, false);
+            }
+            stays
+        });
+        for cell in forest.near.drawn_cells() {
+            if marked.insert(cell) {
+                set(cell, true);
+            }
+        }
     }
 }
 
-/// Plants the tiles that are wanted from where the viewers are, and removes those that no longer are.
+/// Makes the impostors of tiles that were planted, and removes those of tiles that are dropped.
 pub(super) fn stream_impostor_tiles(
     mut commands: Commands,
     library: Res<ImpostorSpeciesLibrary>,
     capabilities: Res<RenderCapabilities>,
-    viewpoints: Viewpoints,
-    mut places: Local<Vec<ViewerPose>>,
+    assets: Res<AssetServer>,
     mut meshes: ResMut<Assets<Mesh>>,
-    mut forests: Query<(Entity, &ForestCells, Option<&RenderLayers>, Option<&mut ForestImpostors>)>,
+    mut masks: ResMut<NearMasks>,
+    mut forests: Query<(Entity, &mut ForestCells, Option<&RenderLayers>, Option<&mut ForestImpostors>)>,
 ) {
     if !capabilities.sways {
         // Impostors read the season from a table.
         return;
     }
-    viewpoints.fill(&mut places);
-    for (entity, forest, layers, tiles) in &mut forests {
+    for (entity, mut forest, layers, tiles) in &mut forests {
         let is_wanted = forest.settings().far_to_m > 0.0;
+        forest.keep_tiles_for_impostors(is_wanted);
+        let is_ready = forest.species().iter().all(|species| library.is_settled(species, &assets));
         let mut tiles = match tiles {
-            Some(tiles) if tiles.generation == forest.generation() => tiles,
+            Some(tiles) if is_wanted && tiles.tiles_since == forest.tiles_since() => tiles,
             None if !is_wanted => continue,
             older => {
-                let is_baked = forest.species().iter().all(|species| library.get(species.id()).is_some());
-                if is_baked || !is_wanted {
+                if is_ready || !is_wanted {
                     older.iter().flat_map(|older| older.meshes()).for_each(|mesh| commands.entity(mesh).despawn());
-                    begin(entity, forest, is_wanted, &mut commands);
+                    begin(entity, &mut forest, is_wanted, &mut commands);
                 }
                 continue;
             }
         };
-        let tiles = &mut *tiles;
         let spawner = TileSpawner { forest: entity, layers, capabilities: *capabilities };
-        tiles.receive(forest, &library, &spawner, &mut commands, &mut meshes);
-        tiles.stream.step(&places, &tiles.tiles, &mut tiles.orders);
-        for removed in tiles.orders.drop.iter().filter_map(|tile| tiles.tiles.remove(tile)) {
-            removed.meshes.into_iter().for_each(|mesh| commands.entity(mesh).despawn());
+        tiles.drop_tiles(&forest, &mut commands, &mut masks);
+        tiles.receive(&forest, &library, &spawner, &mut commands, (&mut meshes, &mut masks));
+        if is_ready {
+            tiles.make_tiles(&mut forest, &library);
         }
-        for &tile in &tiles.orders.plant {
-            tiles.planting.push((tile, plant_tile(tile, tiles.cells, forest, &library)));
-        }
+        tiles.is_complete = forest.is_planted() && tiles.making.is_empty() && !forest.has_tiles_for_impostors();
     }
 }
 
-fn begin(entity: Entity, forest: &ForestCells, is_wanted: bool, commands: &mut Commands) {
+fn begin(entity: Entity, forest: &mut ForestCells, is_wanted: bool, commands: &mut Commands) {
     let mut forest_entity = commands.entity(entity);
-    match ForestImpostors::new(forest) {
-        Ok(tiles) if is_wanted => {
-            forest_entity.insert(tiles);
-        }
-        Ok(_) => {
-            forest_entity.try_remove::<ForestImpostors>();
-        }
-        Err(error) => {
-            warn!("forest: {error}; there are no impostors");
-            forest_entity.try_remove::<ForestImpostors>();
-        }
-    }
-}
-
-fn plant_tile(tile: IVec2, cells: i32, forest: &ForestCells, library: &ImpostorSpeciesLibrary) -> Task<Vec<TileMesh>> {
-    let (planter, ground) = (forest.shared_planter(), forest.ground());
-    let shapes: Vec<Shape> =
-        forest.species().iter().filter_map(|species| library.get(species.id())).map(Shape::from).collect();
-    AsyncComputeTaskPool::get().spawn(async move {
-        let corner = planter.corner_m(tile * cells).as_vec2();
-        let mut trees: Vec<Vec<ImpostorInstance>> = vec![Vec::new(); shapes.len()];
-        let mut planted = Vec::new();
-        for cell in (0..cells * cells).map(|cell| IVec2::new(cell % cells, cell / cells)) {
-            planter.plant(tile * cells + cell, &ground, &mut planted);
-            for plant in &planted {
-                let species = usize::from(plant.species);
-                let Some(shape) = shapes.get(species) else { continue };
-                trees[species].push(impostor_of(plant, shape, corner));
-            }
-        }
-        let drawn = |(species, trees): (usize, Vec<ImpostorInstance>)| {
-            let (mesh, bounds) = impostor_mesh(&trees, shapes[species].reach_m);
-            TileMesh { species, mesh, bounds, trees: trees.len() }
-        };
-        trees.into_iter().enumerate().filter(|(_, trees)| !trees.is_empty()).map(drawn).collect()
-    })
-}
-
-/// What a task needs of an [`ImpostorSpecies`].
-#[derive(Clone, Copy)]
-struct Shape {
-    age: Age,
-    reach_m: f32,
-    variants: u32,
-    shown_variants: u32,
-}
-
-impl From<&ImpostorSpecies> for Shape {
-    fn from(species: &ImpostorSpecies) -> Self {
-        let &ImpostorSpecies { age, reach_m, variants, shown_variants, .. } = species;
-        Self { age, reach_m, variants, shown_variants }
-    }
-}
-
-/// The impostor of a plant: as large as the tree that it would be near, and of its variant if the atlas shows that.
-fn impostor_of(plant: &Planted, shape: &Shape, corner: Vec2) -> ImpostorInstance {
-    ImpostorInstance {
-        foot: plant.position - Vec3::new(corner.x, 0.0, corner.y),
-        turn_rad: plant.turn_rad,
-        size: shape.age.stage(plant.age_years).height * plant.vigour,
-        tint: plant.tint,
-        variant: Tree::variant_of(u64::from(plant.seed), shape.variants) % shape.shown_variants.max(1),
+    if is_wanted {
+        forest.replant_lost_tiles();
+        forest_entity.insert(ForestImpostors::new(forest));
+    } else {
+        forest_entity.try_remove::<ForestImpostors>();
     }
 }
 
@@ -237,24 +192,62 @@ impl TileSpawner<'_> {
 }
 
 impl ForestImpostors {
-    /// Takes over tiles that have been planted.
+    fn drop_tiles(&mut self, forest: &ForestCells, commands: &mut Commands, masks: &mut NearMasks) {
+        for dropped in forest.dropped_tiles().iter().filter_map(|tile| self.tiles.remove(tile)) {
+            dropped.meshes.into_iter().for_each(|mesh| commands.entity(mesh).despawn());
+            masks.remove(dropped.mask);
+        }
+    }
+
+    /// Has the meshes of tiles made that have been planted. Where a species can be shown that could not be, all are made anew.
+    fn make_tiles(&mut self, forest: &mut ForestCells, library: &ImpostorSpeciesLibrary) {
+        let lacking = forest.species().iter().filter(|species| library.get(species.id()).is_none()).count();
+        if lacking < std::mem::replace(&mut self.lacking_species, lacking) {
+            forest.replant();
+        }
+        let room = (forest.settings().cells_at_once as usize).saturating_sub(self.making.len());
+        if room == 0 || !forest.has_tiles_for_impostors() {
+            return;
+        }
+        let shape = |species: &Handle<Species>| library.get(species.id()).map(ImpostorShape::from);
+        let shapes: Arc<[Option<ImpostorShape>]> = forest.species().iter().map(shape).collect();
+        for (place, planted) in forest.take_tiles_for_impostors(room) {
+            let (shapes, corner) = (shapes.clone(), forest.planter().corner_m(place * self.cells).as_vec2());
+            let task = AsyncComputeTaskPool::get().spawn(async move { tile_meshes(&planted, corner, &shapes) });
+            // What was planted before is out of date.
+            self.making.retain(|(other, _)| *other != place);
+            self.making.push((place, task));
+        }
+    }
+
+    /// Takes over meshes that have been made. A tile that has other plants now shows them from the same frame on.
     fn receive(
         &mut self,
         forest: &ForestCells,
         library: &ImpostorSpeciesLibrary,
         spawner: &TileSpawner,
         commands: &mut Commands,
-        meshes: &mut Assets<Mesh>,
+        (meshes, masks): (&mut Assets<Mesh>, &mut NearMasks),
     ) {
-        let Self { planting, tiles, stream, cells, .. } = self;
-        planting.retain_mut(|(place, task)| {
-            let Some(planted) = block_on(poll_once(task)) else { return true };
-            if !stream.fulfil(*place) {
+        let Self { making, tiles, cells, marked, .. } = self;
+        making.retain_mut(|(place, task)| {
+            let Some(made) = block_on(poll_once(task)) else { return true };
+            if !forest.has_tile(*place) {
                 return false;
             }
-            let corner = forest.planter().corner_m(*place * *cells).as_vec2();
-            let mut tile = Tile::default();
-            for TileMesh { species, mesh, bounds, trees } in planted {
+            let first = *place * *cells;
+            let tile = tiles.entry(*place).or_insert_with(|| {
+                let mask = masks.add(cells.cast_unsigned(), forest.mask_range());
+                let is_inside = |cell: IVec2| cell.cmpge(IVec2::ZERO).all() && cell.cmplt(IVec2::splat(*cells)).all();
+                for cell in marked.iter().map(|cell| cell - first).filter(|cell| is_inside(*cell)) {
+                    masks.set(&mask, cell.as_uvec2(), true);
+                }
+                Tile { meshes: Vec::new(), mask, trees: 0, bytes: 0 }
+            });
+            tile.meshes.drain(..).for_each(|mesh| commands.entity(mesh).despawn());
+            (tile.trees, tile.bytes) = (0, 0);
+            let corner = forest.planter().corner_m(first).as_vec2();
+            for TileMesh { species, mesh, bounds, trees } in made {
                 let Some(species) = library.get(forest.species()[species].id()) else { continue };
                 tile.trees += trees;
                 tile.bytes += mesh.get_vertex_buffer_size() + mesh.get_index_buffer_bytes().map_or(0, <[u8]>::len);
@@ -262,11 +255,11 @@ impl ForestImpostors {
                     Transform::from_xyz(corner.x, 0.0, corner.y),
                     Mesh3d(meshes.add(mesh)),
                     MeshMaterial3d(species.material.clone()),
+                    tile.mask.tag(),
                     bounds,
                 );
                 tile.meshes.push(spawner.spawn(drawn, commands));
             }
-            tiles.insert(*place, tile);
             false
         });
     }

@@ -3,3 +3,4 @@
 pub(crate) mod buffer_writes;
 pub(crate) mod dirty_table;
 pub(crate) mod sway_buffers;
+pub(crate) mod table_uploads;

@@ -6,9 +6,9 @@ use crate::{
     background::drop_in_background,
     render::{
         buffers::{
-            buffer_writes::BufferWrites,
-            dirty_table::{DirtyTable, with_reserve},
+            dirty_table::with_reserve,
             sway_buffers::{FIRST_BYTES, SwayBuffers, empty_buffer},
+            table_uploads::TableUploads,
         },
         capabilities::RenderCapabilities,
         gpu::wind_table::pack_wind,
@@ -29,7 +29,6 @@ use bevy::{
     render::storage::ShaderBuffer,
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
 };
-use bytemuck::Pod;
 use std::sync::Arc;
 
 /// What was uploaded so far.
@@ -109,41 +108,20 @@ pub(crate) fn pack_incoming_wind(mut sway: ResMut<ActiveSway>, mut packed: ResMu
     }
 }
 
-/// Buffers, and how they are written.
+/// The buffers of trees, and what is in them.
 #[derive(SystemParam)]
 pub(crate) struct Uploads<'w> {
     shared: Res<'w, SwayBuffers>,
     state: ResMut<'w, UploadState>,
-    buffers: ResMut<'w, Assets<ShaderBuffer>>,
-    writes: ResMut<'w, BufferWrites>,
+    tables: TableUploads<'w>,
 }
 
 impl Uploads<'_> {
-    /// Uploads the rows of a table that were written. A table that has outgrown its buffer gets another.
-    fn upload<T: Pod + Default>(&mut self, handle: &Handle<ShaderBuffer>, table: &mut DirtyTable<T>) {
-        if table.grow_capacity() {
-            self.replace(handle, table.bytes() as u64);
-        }
-        let size = table.bytes() as u64;
-        table.upload(|first, rows| {
-            let offset = u64::from(first) * size_of::<T>() as u64;
-            self.writes.write(handle, size, offset, bytemuck::cast_slice(rows));
-        });
-    }
-
     /// Grows the buffer of poses, with a reserve.
     fn grow_poses(&mut self, poses: u32) {
         if poses > self.state.pose_capacity {
             self.state.pose_capacity = with_reserve(poses);
-            let handle = self.shared.poses.clone();
-            self.replace(&handle, 2 * u64::from(self.state.pose_capacity) * POSE_BYTES as u64);
-        }
-    }
-
-    /// Puts a buffer of another size in the place of one.
-    fn replace(&mut self, handle: &Handle<ShaderBuffer>, bytes: u64) {
-        if let Some(mut buffer) = self.buffers.get_mut(handle) {
-            *buffer = ShaderBuffer::with_size(bytes, RenderAssetUsages::RENDER_WORLD);
+            self.tables.replace(&self.shared.poses, 2 * u64::from(self.state.pose_capacity) * POSE_BYTES as u64);
         }
     }
 }
@@ -167,7 +145,7 @@ pub(crate) fn upload_winds(
         uploads.state.fits[slot] = bytes <= limit;
         if bytes <= limit {
             let handle = uploads.shared.winds[slot].clone();
-            if let Some(mut buffer) = uploads.buffers.get_mut(&handle) {
+            if let Some(mut buffer) = uploads.tables.buffers.get_mut(&handle) {
                 *buffer = ShaderBuffer::new(packed, RenderAssetUsages::RENDER_WORLD);
             }
         } else if !*has_warned {
@@ -192,9 +170,9 @@ pub(crate) fn upload_frame(
     let has_new_rows = tables.trees.is_dirty() || tables.beams.is_dirty();
     tables.compact();
     let (shared, workgroups) = (uploads.shared.clone(), uploads.state.workgroups.clone());
-    uploads.upload(&shared.trees, &mut tables.trees);
-    uploads.upload(&shared.beams, &mut tables.beams);
-    uploads.upload(&workgroups, &mut tables.workgroups.table);
+    uploads.tables.upload(&shared.trees, &mut tables.trees);
+    uploads.tables.upload(&shared.beams, &mut tables.beams);
+    uploads.tables.upload(&workgroups, &mut tables.workgroups.table);
     uploads.grow_poses(tables.pose_count());
 
     let state = &mut *uploads.state;
@@ -204,7 +182,7 @@ pub(crate) fn upload_frame(
     dispatch.is_previous_due = has_new_rows || state.posed != Some((clock.previous_s, previous_blend));
     state.posed = Some((clock.time_s, blend));
     let row = frame_row(&sway, &clock, &season, &viewers, state, dispatch.workgroups);
-    uploads.writes.write(&shared.frame, FIRST_BYTES, 0, bytemuck::bytes_of(&row));
+    uploads.tables.writes.write(&shared.frame, FIRST_BYTES, 0, bytemuck::bytes_of(&row));
 }
 
 fn frame_row(
@@ -231,10 +209,10 @@ fn frame_row(
         workgroup_count,
         year: season.wrapped(),
         lod_ends: viewers.thresholds.ends,
-        impostors_from_m: viewers.thresholds.impostors_from_m,
         fade: viewers.thresholds.fade,
         height_tolerance: HEIGHT_TOLERANCE,
         viewer_count: 0,
+        padding: 0,
         viewers: [[0.0; 4]; MAX_VIEWERS],
     };
     for (place, viewer) in row.viewers.iter_mut().zip(viewers.iter()) {

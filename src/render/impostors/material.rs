@@ -2,7 +2,7 @@
 
 use super::{
     mesh::{ATTRIBUTE_IMPOSTOR, MAX_SIZE, MAX_VARIANTS},
-    near_mask::NEAR_MASK_SIDE,
+    near_mask::HEADER,
 };
 use crate::{
     lod::{ImpostorAtlas, ImpostorFrame, ImpostorSway},
@@ -56,7 +56,7 @@ pub struct ImpostorExtension {
     wind_b: Handle<ShaderBuffer>,
     /// Cells whose trees are entities.
     #[storage(108, read_only)]
-    near_mask: Handle<ShaderBuffer>,
+    near_masks: Handle<ShaderBuffer>,
     lights: TreeLights,
 }
 
@@ -125,7 +125,7 @@ pub(crate) fn impostor_material(
     atlas: AtlasImages,
     images: &mut Assets<Image>,
     buffers: &SwayBuffers,
-    near_mask: Handle<ShaderBuffer>,
+    near_masks: Handle<ShaderBuffer>,
 ) -> ImpostorMaterial {
     let [wind_a, wind_b] = &buffers.winds;
     ImpostorMaterial {
@@ -160,7 +160,7 @@ pub(crate) fn impostor_material(
             season: SeasonUniform::new(&species.phenology, atlas.summer),
             wind_a: wind_a.clone(),
             wind_b: wind_b.clone(),
-            near_mask,
+            near_masks,
             lights: TreeLights::default(),
         },
     }
@@ -203,11 +203,8 @@ impl MaterialExtension for ImpostorExtension {
         // Coordinates and colour carry the place on the tree and the direction to the view to the fragments.
         let mut flags = vec!["VERTEX_UVS_A", "VERTEX_UVS_B", "VERTEX_COLORS", "VISIBILITY_RANGE_DITHER"];
         flags.extend(key.bind_group_data.flags());
-        let constants = [
-            ("MAX_IMPOSTOR_VARIANTS", MAX_VARIANTS),
-            ("MAX_IMPOSTOR_SIZE", MAX_SIZE),
-            ("NEAR_MASK_SIDE", NEAR_MASK_SIDE.cast_unsigned()),
-        ];
+        let constants =
+            [("MAX_IMPOSTOR_VARIANTS", MAX_VARIANTS), ("MAX_IMPOSTOR_SIZE", MAX_SIZE), ("NEAR_MASK_HEADER", HEADER)];
         set_constants(descriptor, &constants);
         specialize(descriptor, layout, &attributes, &flags)
     }

@@ -1,81 +1,171 @@
-//! Which cells' trees are entities, as the shader of impostors reads it: a square of bits about the viewer.
+//! Which cells' trees are entities, as the shader of impostors reads it: for each tile a bit a cell.
 
-use bevy::{asset::RenderAssetUsages, prelude::*, render::storage::ShaderBuffer};
+use crate::render::{
+    buffers::{dirty_table::DirtyTable, sway_buffers::empty_buffer, table_uploads::TableUploads},
+    instances::rows::NO_IMPOSTOR_M,
+};
+use bevy::{mesh::MeshTag, prelude::*, render::storage::ShaderBuffer};
 
-/// Cells along a side of the square: at 64 m a cell, a kilometre to each side.
-pub(crate) const NEAR_MASK_SIDE: i32 = 32;
-/// Words before the rows: the square's first cell, x and z, and the bits of a cell's side and of the farthest distance.
-const HEADER: usize = 4;
-const WORDS: usize = HEADER + NEAR_MASK_SIDE as usize;
+/// Words of a mask before its bits: those of [`MaskRange`], and the cells along a side.
+pub(crate) const HEADER: u32 = 4;
 
-/// The square in force.
-#[derive(Resource)]
-pub(crate) struct NearMask {
-    pub buffer: Handle<ShaderBuffer>,
-    words: [u32; WORDS],
+/// The distances of a forest's impostors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MaskRange {
+    /// Side of a cell, m.
+    pub cell_m: f32,
+    /// Impostors are drawn as far as this, m.
+    pub far_to_m: f32,
+    /// In near cells none stands nearer than this, m; none stands there at all before it is set.
+    pub from_m: Option<f32>,
 }
 
-impl FromWorld for NearMask {
+/// The mask of one tile: where it lies among all. Give it back to [`NearMasks::remove`].
+#[derive(Debug, Default, PartialEq, Eq)]
+pub(crate) struct NearMask {
+    first: u32,
+    /// Cells along a side of the tile.
+    cells: u32,
+}
+
+/// The masks of all tiles of all forests.
+#[derive(Resource)]
+pub(crate) struct NearMasks {
+    pub buffer: Handle<ShaderBuffer>,
+    words: DirtyTable<u32>,
+    /// Masks that were given back.
+    free: Vec<NearMask>,
+}
+
+impl FromWorld for NearMasks {
     fn from_world(world: &mut World) -> Self {
-        let words = [0; WORDS];
-        Self { buffer: world.resource_mut::<Assets<ShaderBuffer>>().add(mask_buffer(words)), words }
+        let buffer = empty_buffer(&mut world.resource_mut::<Assets<ShaderBuffer>>());
+        Self { buffer, words: DirtyTable::default(), free: Vec::new() }
     }
 }
 
 impl NearMask {
-    /// Sets the bits of `cells` in the square about `centre`, and uploads it if that has changed. Cells outside do not count as near.
-    pub fn update(
-        &mut self,
-        centre: IVec2,
-        cell_m: f32,
-        far_to_m: f32,
-        cells: impl Iterator<Item = IVec2>,
-        buffers: &mut Assets<ShaderBuffer>,
-    ) {
-        let words = mask_words(centre, cell_m, far_to_m, cells);
-        if words == self.words {
-            return;
-        }
-        self.words = words;
-        if let Some(mut buffer) = buffers.get_mut(&self.buffer) {
-            *buffer = mask_buffer(words);
-        }
+    /// The tag of the tile's meshes.
+    pub fn tag(&self) -> MeshTag {
+        MeshTag::new(self.first)
+    }
+
+    fn words(&self) -> u32 {
+        HEADER + (self.cells * self.cells).div_ceil(u32::BITS)
     }
 }
 
-fn mask_buffer(words: [u32; WORDS]) -> ShaderBuffer {
-    ShaderBuffer::new(words.to_vec(), RenderAssetUsages::RENDER_WORLD)
-}
+impl NearMasks {
+    /// A mask for a tile of so many cells along a side, none of which is near.
+    pub fn add(&mut self, cells: u32, range: MaskRange) -> NearMask {
+        let free = self.free.iter().position(|mask| mask.cells == cells);
+        let mask =
+            free.map_or_else(|| NearMask { first: self.words.len(), cells }, |place| self.free.swap_remove(place));
+        self.words.grow_to((mask.first + mask.words()).max(self.words.len()));
+        (HEADER..mask.words()).for_each(|word| self.words.write(mask.first + word, 0));
+        self.words.write(mask.first + HEADER - 1, cells);
+        self.set_range(&mask, range);
+        mask
+    }
 
-fn mask_words(centre: IVec2, cell_m: f32, far_to_m: f32, cells: impl Iterator<Item = IVec2>) -> [u32; WORDS] {
-    let first = centre - NEAR_MASK_SIDE / 2;
-    let mut words = [0; WORDS];
-    words[..HEADER].copy_from_slice(&[
-        first.x.cast_unsigned(),
-        first.y.cast_unsigned(),
-        cell_m.to_bits(),
-        far_to_m.to_bits(),
-    ]);
-    for at in cells.map(|cell| cell - first) {
-        if at.cmpge(IVec2::ZERO).all() && at.cmplt(IVec2::splat(NEAR_MASK_SIDE)).all() {
-            words[HEADER + at.y as usize] |= 1 << at.x;
+    /// Takes a mask back.
+    pub fn remove(&mut self, mask: NearMask) {
+        self.free.push(mask);
+    }
+
+    /// Sets the distances of a tile.
+    pub fn set_range(&mut self, mask: &NearMask, MaskRange { cell_m, far_to_m, from_m }: MaskRange) {
+        for (word, value) in (mask.first..).zip([cell_m, far_to_m, from_m.unwrap_or(NO_IMPOSTOR_M)]) {
+            self.words.write(word, value.to_bits());
         }
     }
-    words
+
+    /// Sets whether a cell of a tile, counted from the tile's first, is near.
+    pub fn set(&mut self, mask: &NearMask, cell: UVec2, is_near: bool) {
+        let bit = cell.y * mask.cells + cell.x;
+        if let Some(word) = self.words.get_mut(mask.first + HEADER + bit / u32::BITS) {
+            let bit = 1 << (bit % u32::BITS);
+            *word = if is_near { *word | bit } else { *word & !bit };
+        }
+    }
+
+    /// Uploads what has changed.
+    pub fn upload(&mut self, uploads: &mut TableUploads) {
+        if self.words.is_dirty() {
+            uploads.upload(&self.buffer, &mut self.words);
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
+    use std::collections::BTreeSet;
+
+    const RANGE: MaskRange = MaskRange { cell_m: 64.0, far_to_m: 900.0, from_m: None };
+
+    fn masks() -> NearMasks {
+        NearMasks { buffer: Handle::default(), words: DirtyTable::default(), free: Vec::new() }
+    }
+
+    /// As the shader reads it.
+    fn is_near(masks: &NearMasks, mask: &NearMask, cell: UVec2) -> bool {
+        let words = &masks.words.rows()[mask.first as usize..];
+        let bit = cell.y * words[3] + cell.x;
+        words[4 + (bit >> 5) as usize] >> (bit & 31) & 1 == 1
+    }
 
     #[test]
-    fn cells_inside_the_square_are_set_and_others_are_not() {
-        const SIDE: i32 = NEAR_MASK_SIDE;
-        let cells = [IVec2::new(-5, 7), IVec2::new(-5 - SIDE, 7), IVec2::new(10, 7 + SIDE / 2)];
-        let words = mask_words(IVec2::new(-5, 7), 64.0, 900.0, cells.into_iter());
-        let bits: u32 = words[HEADER..].iter().map(|row| row.count_ones()).sum();
-        assert_eq!(bits, 1);
-        assert_eq!(words[HEADER + SIDE as usize / 2], 1 << (SIDE / 2));
-        assert_eq!((words[0].cast_signed(), f32::from_bits(words[2])), (-5 - SIDE / 2, 64.0));
+    fn a_mask_has_the_distances_of_its_forest() {
+        let mut masks = masks();
+        let [one, other] = [4, 8].map(|cells| masks.add(cells, RANGE));
+        masks.set_range(&other, MaskRange { from_m: Some(50.0), ..RANGE });
+        let header = |mask: &NearMask| masks.words.rows()[mask.first as usize..][..4].to_vec();
+        assert_eq!(header(&one), [64.0_f32.to_bits(), 900.0_f32.to_bits(), NO_IMPOSTOR_M.to_bits(), 4]);
+        assert_eq!(header(&other)[2..], [50.0_f32.to_bits(), 8]);
+    }
+
+    /// Masks of several sizes that come, change and go at random hold what a set of cells a mask holds.
+    #[test]
+    fn masks_hold_the_near_cells_of_their_own_tile() {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(2);
+        let mut masks = masks();
+        let mut tiles: Vec<(NearMask, BTreeSet<(u32, u32)>)> = Vec::new();
+        let mut longest = 0;
+        for _ in 0..4000 {
+            match random.random_range(0..10) {
+                0 if tiles.len() < 40 => {
+                    let cells = 4 << random.random_range(0..5);
+                    tiles.push((masks.add(cells, RANGE), BTreeSet::new()));
+                }
+                1 if !tiles.is_empty() => {
+                    let (mask, _) = tiles.swap_remove(random.random_range(0..tiles.len()));
+                    masks.remove(mask);
+                }
+                _ if !tiles.is_empty() => {
+                    let tile = random.random_range(0..tiles.len());
+                    let (mask, near) = &mut tiles[tile];
+                    let [x, y] = [0; 2].map(|_: u32| random.random_range(0..mask.cells));
+                    let is_near = random.random_bool(0.6);
+                    if is_near {
+                        near.insert((x, y))
+                    } else {
+                        near.remove(&(x, y))
+                    };
+                    masks.set(mask, UVec2::new(x, y), is_near);
+                }
+                _ => {}
+            }
+            longest = longest.max(masks.words.len());
+        }
+        for (mask, near) in &tiles {
+            let cells = (0..mask.cells).flat_map(|y| (0..mask.cells).map(move |x| UVec2::new(x, y)));
+            let found: BTreeSet<(u32, u32)> =
+                cells.filter(|cell| is_near(&masks, mask, *cell)).map(|cell| (cell.x, cell.y)).collect();
+            assert_eq!(found, *near);
+        }
+        // Masks that were given back are used again: at most 40 of each size were ever in use.
+        assert!(longest <= 40 * (5 * HEADER + 1 + 2 + 8 + 32 + 128), "{longest} words");
     }
 }

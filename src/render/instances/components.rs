@@ -18,6 +18,10 @@ pub(crate) struct TreeInstance {
     pub tint: u8,
 }
 
-/// A tree for which an impostor stands from [`ImpostorRange`](crate::render::lod::impostor_range::ImpostorRange) on.
-#[derive(Component, Clone, Copy)]
-pub(crate) struct HasImpostor;
+/// A tree for which an impostor stands beyond some distance. It is written by what draws impostors. No impostor stands for its clones.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+#[component(clone_behavior = Ignore)]
+pub(crate) struct HasImpostor {
+    /// The impostor does not stand nearer than this, m; none until it is drawn.
+    pub from_m: Option<f32>,
+}

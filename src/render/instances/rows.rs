@@ -53,14 +53,13 @@ pub(crate) struct FrameRow {
     pub year: f32,
     /// Where LOD levels 0, 1 and 2 of a tree end, per metre of its height.
     pub lod_ends: [f32; 3],
-    /// No impostor stands for a tree nearer than this, m.
-    pub impostors_from_m: f32,
     /// Levels fade over this share of a distance, to either side.
     pub fade: f32,
     /// Heights of a tree and its impostor differ by less than this factor.
     pub height_tolerance: f32,
     /// Of `viewers`, those that are set.
     pub viewer_count: u32,
+    pub padding: u32,
     /// The cameras: place, and the factor of [`LodViewer::factor`](crate::render::lod::viewers::LodViewer::factor).
     pub viewers: [[f32; 4]; MAX_VIEWERS],
 }
@@ -78,7 +77,13 @@ pub(crate) struct TreeRow {
     pub first_pose: u32,
     /// See [`TreeRow::season_and_height`].
     pub season_and_height: u32,
+    /// No impostor stands for the tree nearer than this, m; [`NO_IMPOSTOR_M`] where none stands for it at all.
+    pub impostor_from_m: f32,
+    pub padding: [u32; 3],
 }
+
+/// Farther than anything, m.
+pub(crate) const NO_IMPOSTOR_M: f32 = 1e30;
 
 impl TreeRow {
     /// How far it is ahead of the season, -0.5 to 0.5 years in steps of 8 minutes, and its height, m, to 256 m in steps of
@@ -104,7 +109,7 @@ mod tests {
     fn rows_have_the_sizes_of_the_shader() {
         assert_eq!(size_of::<BeamRow>(), 48);
         assert_eq!(size_of::<FrameRow>(), 208);
-        assert_eq!(size_of::<TreeRow>(), 48);
+        assert_eq!(size_of::<TreeRow>(), 64);
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! stands.
 
 use super::{
-    rows::{BeamRow, POSE_BYTES, TreeRow},
+    rows::{BeamRow, NO_IMPOSTOR_M, POSE_BYTES, TreeRow},
     tag::MAX_ROWS,
     workgroups::PoseWorkgroups,
 };
@@ -137,6 +137,13 @@ impl InstanceTables {
         tree.position = translation.to_array();
         tree.scale = scale;
         tree.season_and_height = TreeRow::season_and_height(season_shift, height_m * scale.abs());
+    }
+
+    /// Writes from where on an impostor stands for a tree, m.
+    pub fn write_impostor(&mut self, row: u32, from_m: Option<f32>) {
+        if let Some(tree) = self.trees.get_mut(row) {
+            tree.impostor_from_m = from_m.unwrap_or(NO_IMPOSTOR_M);
+        }
     }
 
     /// Poses a tree from now on, as long as there are poses, or no longer.

@@ -1,6 +1,9 @@
 //! Keeps the tables up to date with trees that move, and poses those that are visible.
 
-use super::{components::TreeInstance, tables::InstanceTables};
+use super::{
+    components::{HasImpostor, TreeInstance},
+    tables::InstanceTables,
+};
 use crate::{
     render::{capabilities::RenderCapabilities, lod::thresholds::LodSelection},
     tree::Tree,
@@ -15,13 +18,14 @@ pub(crate) fn write_tree_transforms(
     mut tables: ResMut<InstanceTables>,
     mut has_warned: Local<bool>,
     trees: Query<
-        (Entity, &TreeInstance, &Tree, &GlobalTransform),
-        Or<(Changed<GlobalTransform>, Changed<Tree>, Changed<TreeInstance>)>,
+        (Entity, &TreeInstance, &Tree, &GlobalTransform, Option<&HasImpostor>),
+        Or<(Changed<GlobalTransform>, Changed<Tree>, Changed<TreeInstance>, Changed<HasImpostor>)>,
     >,
 ) {
-    for (entity, instance, tree, at) in &trees {
+    for (entity, instance, tree, at, impostor) in &trees {
         let Some(row) = instance.row else { continue };
         tables.write_transform(row, at, tree.season_shift(), instance.height_m);
+        tables.write_impostor(row, impostor.and_then(|impostor| impostor.from_m));
         if !*has_warned && !is_uniform(at.scale()) {
             warn!(
                 "windwood: tree {entity} has the scale {}, but a tree in the wind has one scale for all axes; the nearest \

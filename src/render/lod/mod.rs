@@ -1,6 +1,5 @@
 //! LOD selection: which levels of a tree are drawn, by its size on the pictures of the cameras.
 
-pub(crate) mod impostor_range;
 pub(crate) mod select;
 pub(crate) mod thresholds;
 pub(crate) mod viewers;

@@ -11,7 +11,8 @@ use crate::render::{
 use bevy::prelude::*;
 
 /// What selection has to know of a tree.
-type Selected = (Entity, &'static TreeInstance, &'static GlobalTransform, Has<HasImpostor>, &'static mut LodSelection);
+type Selected =
+    (Entity, &'static TreeInstance, &'static GlobalTransform, Option<&'static HasImpostor>, &'static mut LodSelection);
 
 /// Selects the levels of trees that have just got an instance, or have moved, and those of all when a viewer has moved. In the latter case
 /// no more than so many change in a frame; the rest follow in the next ones.
@@ -24,22 +25,22 @@ pub(crate) fn select_lods(
     moved: Query<Entity, (With<LodSelection>, Changed<GlobalTransform>)>,
 ) {
     for tree in &new {
-        let Ok((entity, instance, _, has_impostor, mut selection)) = trees.get_mut(tree) else { continue };
+        let Ok((entity, instance, _, impostor, mut selection)) = trees.get_mut(tree) else { continue };
         // A tree that was spawned in this frame has no place in the world yet.
         let at = transforms.compute_global_transform(entity).unwrap_or_default();
-        *selection = select(&viewers, instance, &at, has_impostor, None);
+        *selection = select(&viewers, instance, &at, impostor, None);
     }
     for tree in &moved {
-        let Ok((_, instance, at, has_impostor, mut selection)) = trees.get_mut(tree) else { continue };
-        let next = select(&viewers, instance, at, has_impostor, Some(*selection));
+        let Ok((_, instance, at, impostor, mut selection)) = trees.get_mut(tree) else { continue };
+        let next = select(&viewers, instance, at, impostor, Some(*selection));
         selection.set_if_neq(next);
     }
     if !std::mem::take(&mut viewers.bypass_change_detection().is_due) {
         return;
     }
     let mut left = settings.0.changes_per_frame;
-    for (_, instance, at, has_impostor, mut selection) in &mut trees {
-        let next = select(&viewers, instance, at, has_impostor, Some(*selection));
+    for (_, instance, at, impostor, mut selection) in &mut trees {
+        let next = select(&viewers, instance, at, impostor, Some(*selection));
         if next == *selection {
             continue;
         }
@@ -56,14 +57,14 @@ fn select(
     viewers: &LodViewers,
     instance: &TreeInstance,
     at: &GlobalTransform,
-    has_impostor: bool,
+    impostor: Option<&HasImpostor>,
     before: Option<LodSelection>,
 ) -> LodSelection {
     let (distance, thresholds): (_, &LodThresholds) = (viewers.distance(at.translation()), &viewers.thresholds);
     let (height_m, count) = (instance.height_m * at.affine().matrix3.y_axis.length(), instance.lod_count);
-    match (instance.row, has_impostor) {
+    match (instance.row, impostor.and_then(|impostor| impostor.from_m)) {
         (None, _) => thresholds.select_without_fade(distance.scaled_m, height_m, count, before),
-        (Some(_), true) => thresholds.select_before_impostor(distance, height_m, count, before),
-        (Some(_), false) => thresholds.select(distance.scaled_m, height_m, count, before),
+        (Some(_), Some(from_m)) => thresholds.select_before_impostor(distance, height_m, count, from_m, before),
+        (Some(_), None) => thresholds.select(distance.scaled_m, height_m, count, before),
     }
 }

@@ -5,7 +5,6 @@
 //! alike. Meshes are swapped only where the level that goes is all hidden and the one that comes has not begun, so no swap is seen.
 //! Only a viewer who jumps sees levels change at once.
 
-use super::impostor_range::ImpostorRange;
 use crate::{
     lod::{Lens, MOST_LEVELS},
     render::settings::{LevelOfDetail, LevelStyle},
@@ -48,20 +47,17 @@ pub(crate) struct LodThresholds {
     pub ends: [f32; MOST_LEVELS],
     pub fade: f32,
     margin: f32,
-    /// Where impostors begin, m.
-    pub impostors_from_m: f32,
 }
 
 impl LodThresholds {
-    pub fn new(settings: &LevelOfDetail, lens: Lens, impostors: ImpostorRange) -> Self {
+    pub fn new(settings: &LevelOfDetail, lens: Lens) -> Self {
         let [high, middle, medium] = settings.screen_sizes.distances_of_three_m(1.0, lens);
         let ends = match settings.style {
             LevelStyle::Thinned => [high, middle, medium],
             LevelStyle::Paper => [high, medium, NEVER_M],
             LevelStyle::Full => [NEVER_M; MOST_LEVELS],
         };
-        let impostors_from_m = impostors.from_m.unwrap_or(NEVER_M);
-        Self { ends, fade: settings.fade, margin: settings.screen_sizes.margin, impostors_from_m }
+        Self { ends, fade: settings.fade, margin: settings.screen_sizes.margin }
     }
 
     /// The selection for a tree of a height, m, with `count` levels, after the selection before.
@@ -81,19 +77,20 @@ impl LodThresholds {
         LodSelection { lod: last, ..default() }
     }
 
-    /// The same for a tree with an impostor.
+    /// The same for a tree with an impostor, which stands no nearer than `impostor_from_m`.
     pub fn select_before_impostor(
         &self,
         distance: LodDistance,
         height_m: f32,
         count: u8,
+        impostor_from_m: f32,
         before: Option<LodSelection>,
     ) -> LodSelection {
         let selection = self.select(distance.scaled_m, height_m, count, before);
         let margin = if before.is_some_and(|before| before.is_impostor) { -self.margin } else { 0.0 };
         let is_beyond =
             |distance_m: f32, end_m: f32| distance_m > (end_m * (1.0 + self.fade) + slack_m(end_m)) * (1.0 + margin);
-        let is_impostor = is_beyond(distance.m, self.impostors_from_m)
+        let is_impostor = is_beyond(distance.m, impostor_from_m)
             || is_beyond(distance.scaled_m, self.ends[MOST_LEVELS - 1] * height_m * HEIGHT_TOLERANCE);
         LodSelection { is_impostor, ..selection }
     }
@@ -122,10 +119,11 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    const IMPOSTOR_FROM_M: f32 = 200.0;
     const LENS: Lens = Lens { fov_rad: std::f32::consts::FRAC_PI_4, picture_px: 1080.0 };
 
     fn thresholds() -> LodThresholds {
-        LodThresholds::new(&LevelOfDetail::default(), LENS, ImpostorRange { from_m: Some(200.0) })
+        LodThresholds::new(&LevelOfDetail::default(), LENS)
     }
 
     #[test]
@@ -176,8 +174,10 @@ mod tests {
     #[test]
     fn trees_are_dropped_only_where_their_impostor_is_complete() {
         let thresholds = thresholds();
-        let is_impostor =
-            |m, before| thresholds.select_before_impostor(LodDistance { m, scaled_m: m }, 20.0, 3, before).is_impostor;
+        let is_impostor = |m, before| {
+            let distance = LodDistance { m, scaled_m: m };
+            thresholds.select_before_impostor(distance, 20.0, 3, IMPOSTOR_FROM_M, before).is_impostor
+        };
         // Impostors begin at 200 m, and are complete there.
         assert!(!is_impostor(200.0 * (1.0 + thresholds.fade), None) && is_impostor(230.0, None));
         let before = LodSelection { lod: 2, is_fading: false, is_impostor: true };
@@ -187,7 +187,9 @@ mod tests {
 
     #[test]
     fn a_lens_moves_levels_but_not_the_border_of_the_entities() {
-        let select = |m, scaled_m| thresholds().select_before_impostor(LodDistance { m, scaled_m }, 20.0, 3, None);
+        let select = |m, scaled_m| {
+            thresholds().select_before_impostor(LodDistance { m, scaled_m }, 20.0, 3, IMPOSTOR_FROM_M, None)
+        };
         let telephoto = select(150.0, 15.0);
         assert_eq!(telephoto, LodSelection::default());
         assert!(select(260.0, 26.0).is_impostor, "no tree stands there as an entity");

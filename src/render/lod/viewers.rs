@@ -1,9 +1,6 @@
 //! From where trees are seen, and how large.
 
-use super::{
-    impostor_range::ImpostorRange,
-    thresholds::{LodDistance, LodThresholds},
-};
+use super::thresholds::{LodDistance, LodThresholds};
 use crate::{lod::Lens, render::settings::ActiveLevelOfDetail, viewpoint::Viewpoints};
 use bevy::prelude::*;
 
@@ -56,7 +53,7 @@ pub(crate) struct LodViewers {
 impl FromWorld for LodViewers {
     fn from_world(world: &mut World) -> Self {
         let settings = &world.get_resource_or_init::<ActiveLevelOfDetail>().0;
-        let thresholds = LodThresholds::new(settings, Lens::default(), ImpostorRange::default());
+        let thresholds = LodThresholds::new(settings, Lens::default());
         Self { thresholds, viewers: Vec::new(), selected_for: Vec::new(), is_due: false }
     }
 }
@@ -99,7 +96,6 @@ fn pixels_per_metre(camera: &Camera, projection: &Projection) -> Option<PixelsPe
 /// Notes where the viewers are, and whether levels have to be selected anew.
 pub(crate) fn update_lod_viewers(
     settings: Res<ActiveLevelOfDetail>,
-    impostors: Res<ImpostorRange>,
     viewpoints: Viewpoints,
     mut viewers: ResMut<LodViewers>,
 ) {
@@ -128,7 +124,7 @@ pub(crate) fn update_lod_viewers(
         };
         LodViewer { eye, scale }
     }));
-    let thresholds = LodThresholds::new(&settings.0, Lens::with_pixels_at_1_m(px_at_1_m), *impostors);
+    let thresholds = LodThresholds::new(&settings.0, Lens::with_pixels_at_1_m(px_at_1_m));
     let rests = |(now, then): (&LodViewer, &LodViewer)| now.eye.distance(then.eye) < STEP_M && now.scale == then.scale;
     let all_rest = viewers.viewers.len() == viewers.selected_for.len()
         && viewers.viewers.iter().zip(&viewers.selected_for).all(rests);
@@ -154,7 +150,6 @@ mod tests {
     fn viewers(projections: impl IntoIterator<Item = Projection>) -> World {
         let mut world = World::new();
         world.init_resource::<ActiveLevelOfDetail>();
-        world.init_resource::<ImpostorRange>();
         world.init_resource::<LodViewers>();
         for projection in projections {
             let viewport = Some(Viewport { physical_size: UVec2::new(1600, HEIGHT_PX), ..default() });

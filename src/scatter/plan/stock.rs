@@ -21,7 +21,9 @@ pub struct Stock {
     /// Standard deviation of the age; ages are spread log-normally, many young and few old.
     /// units: years, domain: 0 to 3 times the mean.
     pub age_spread_years: f32,
-    /// The age at which it has 95% of its full size. units: years, domain: \[1, 10000\].
+    /// The age at which it has 95% of its full size by the plan's own law of growth, which gives stems in the store their
+    /// [`plan_size`](crate::scatter::Planted::plan_size). Trees are drawn in the size of their species at their age.
+    /// units: years, domain: \[1, 10000\].
     pub full_grown_years: f32,
     /// Standard deviation of the size of plants of the same age, relative. domain: \[0, 0.5\].
     pub size_spread: f32,

@@ -8,7 +8,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::scatter::plan::stock::Stock;
 
-/// Size at the age at which a species is called full-grown: 95%.
+/// What is left to grow at the age at which a species is called full-grown: it has 95% of its size.
 const LEFT_TO_GROW: f32 = 0.05;
 /// The greatest size that fits into a packed plant.
 pub(crate) const GREATEST_SIZE: f32 = 4.0;
@@ -16,15 +16,25 @@ pub(crate) const GREATEST_SIZE: f32 = 4.0;
 const MOST_DEVIATIONS: f32 = 4.0;
 
 /// A plant as it stands in its cell.
+///
+/// # Two sizes
+/// A plan has a law of growth of its own, since it plants whatever has a name: crops, shrubs, trees of another program. It knows no
+/// species files, and its one number, the age at which a stock is full-grown, is enough to know the stems of a plan from the plan alone.
+/// The size that follows from it, `plan_size`, is what stores of cells pack, and what their queries scale trunks by.
+///
+/// The trees of a [`Forest`](crate::forest::Forest) are drawn in the size of their species at that age, after its
+/// [`Age`](crate::tree::growth::age::Age), times `vigour`. There height, girth and crown have a curve each. Age and vigour are the same
+/// in both. For nearly the same heights give a stock the age at which its species has 95% of its greatest height: with the rate k and
+/// the shape p of its height that is -ln(1 - 0.95^(1/p)) / k years.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planted {
     /// Where its stem leaves the ground, in the forest's own frame. units: m.
     pub position: Vec3,
     /// Turn about the vertical. units: rad, domain: \[0, 2π).
     pub turn_rad: f32,
-    /// Its size, relative to a full-grown individual of its species. domain: (0, 4\].
-    pub size: f32,
-    /// Its size, relative to the mean of its species and age.
+    /// Its size after the plan's own law of growth, relative to a full-grown individual. domain: (0, 4\].
+    pub plan_size: f32,
+    /// Its size, relative to the mean of its species and age, whichever law of growth is asked.
     pub vigour: f32,
     /// units: years.
     pub age_years: f32,
@@ -49,7 +59,7 @@ impl Planted {
         Self {
             position,
             turn_rad: random.random_range(0.0..TAU),
-            size: (grown * vigour).clamp(1e-3, GREATEST_SIZE),
+            plan_size: (grown * vigour).clamp(1e-3, GREATEST_SIZE),
             vigour,
             age_years,
             season_days: stock.season_offset_days + stock.season_spread_days * normal(random),
@@ -76,7 +86,7 @@ impl Planted {
         [
             whole(place.x, 65_535.0) | whole(place.y, 65_535.0) << 16,
             self.position.y.to_bits(),
-            (whole(self.turn_rad / TAU, 65_536.0) & 0xffff) | whole(self.size / GREATEST_SIZE, 65_535.0) << 16,
+            (whole(self.turn_rad / TAU, 65_536.0) & 0xffff) | whole(self.plan_size / GREATEST_SIZE, 65_535.0) << 16,
             u32::from(self.species) | tint << 8 | season << 16 | (self.seed & 0xff) << 24,
         ]
     }
@@ -89,8 +99,8 @@ pub struct Stem {
     pub position: Vec3,
     /// Turn about the vertical. units: rad, domain: \[0, 2π).
     pub turn_rad: f32,
-    /// Its size, relative to a full-grown individual of its species. domain: \[0, 4\].
-    pub size: f32,
+    /// Its [`Planted::plan_size`]. domain: \[0, 4\].
+    pub plan_size: f32,
     /// How far it is ahead of the forest's season. units: days, domain: \[-128, 127\].
     pub season_days: f32,
     /// Its shade within the species, from -1 to 1.
@@ -110,7 +120,7 @@ impl Stem {
         Self {
             position: Vec3::new(place.x as f32, f32::from_bits(height), place.y as f32),
             turn_rad: (turn_size & 0xffff) as f32 / 65_536.0 * TAU,
-            size: Self::packed_size(words),
+            plan_size: Self::packed_size(words),
             season_days: f32::from(season) - 128.0,
             tint: f32::from(tint) / 127.0 - 1.0,
             species,
@@ -170,14 +180,14 @@ mod tests {
         assert_relative_eq!(spread, 6.0, max_relative = 0.02);
         let (_, spread) = moments(plants.iter().map(|plant| plant.tint));
         assert_relative_eq!(spread, 0.5 / 3.0_f64.sqrt(), max_relative = 0.02);
-        assert!(plants.iter().all(|plant| (0.0..TAU).contains(&plant.turn_rad) && plant.size > 0.0));
+        assert!(plants.iter().all(|plant| (0.0..TAU).contains(&plant.turn_rad) && plant.plan_size > 0.0));
     }
 
     #[test]
     fn size_follows_mitscherlichs_law() {
         let size = |age_years| {
             let stock = Stock { age_years, age_spread_years: 0.0, size_spread: 0.0, ..Default::default() };
-            Planted::grow(Vec3::ZERO, &stock, 0, 1).size
+            Planted::grow(Vec3::ZERO, &stock, 0, 1).plan_size
         };
         assert_relative_eq!(size(100.0), 0.95, epsilon = 1e-6);
         assert_relative_eq!(size(50.0), 1.0 - 0.05_f32.sqrt(), epsilon = 1e-6);
@@ -195,7 +205,7 @@ mod tests {
             assert_eq!(stem.position.y, 321.5);
             assert!(((stem.turn_rad - plant.turn_rad + 1.0).rem_euclid(TAU) - 1.0).abs() < 1e-4);
             assert!((0.0..TAU).contains(&stem.turn_rad));
-            assert_relative_eq!(stem.size, plant.size, epsilon = 1e-4);
+            assert_relative_eq!(stem.plan_size, plant.plan_size, epsilon = 1e-4);
             assert_eq!((stem.species, stem.seed), (5, plant.seed as u8));
             assert_relative_eq!(stem.tint, plant.tint, epsilon = 0.005);
             assert_relative_eq!(stem.season_days, plant.season_days, epsilon = 0.501);
@@ -207,7 +217,7 @@ mod tests {
         let plant = Planted {
             position: Vec3::new(14.0, 321.5, 36.0),
             turn_rad: 0.25 * TAU,
-            size: 1.0,
+            plan_size: 1.0,
             vigour: 1.0,
             age_years: 80.0,
             season_days: -8.0,

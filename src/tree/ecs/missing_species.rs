@@ -30,6 +30,10 @@ impl fmt::Display for MissingSpecies {
     }
 }
 
+/// Species that were reported as missing, and have not been loaded since. Whoever reports one for others puts it in.
+#[derive(Resource, Default, Deref, DerefMut)]
+pub(crate) struct ReportedSpecies(HashSet<AssetId<Species>>);
+
 /// Logs an error for a species that cannot be loaded, with the first tree that waits for it. It is logged once, and again
 /// after the species was loaded and lost.
 pub(in crate::tree) fn report_missing_species(
@@ -38,7 +42,7 @@ pub(in crate::tree) fn report_missing_species(
     mut assets: MessageReader<AssetEvent<Species>>,
     waiting: Query<(Entity, &Tree), Without<Grown>>,
     changed: Query<(Entity, &Tree), (Changed<Tree>, Without<Grown>)>,
-    mut reported: Local<HashSet<AssetId<Species>>>,
+    mut reported: ResMut<ReportedSpecies>,
     mut missing: MessageWriter<MissingSpecies>,
 ) {
     for event in assets.read() {

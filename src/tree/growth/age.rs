@@ -12,6 +12,9 @@
 //! of 3/2 makes a young tree's girth grow with its height to the power 3/2, the elastic similarity of trees (`McMahon`
 //! 1973, Science 179, 1201). The crown's width lies between the two, at their geometric mean. The default rates are
 //! chosen to give an oak about 2 m at 10 years and 12 m at 60, not fitted to a table.
+//!
+//! A forest's plan has a law of its own for plants of any kind, without species files. [`Planted`](crate::scatter::Planted) says how the
+//! two go together.
 
 use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};

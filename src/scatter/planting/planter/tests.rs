@@ -43,7 +43,7 @@ fn map_place(plant: &Planted) -> DVec2 {
 fn fingerprints(planted: &[Planted]) -> BTreeSet<[u32; 6]> {
     let bits = |plant: &Planted| {
         let [x, y, z] = plant.position.to_array().map(f32::to_bits);
-        [x, y, z, plant.turn_rad.to_bits(), plant.size.to_bits(), plant.seed]
+        [x, y, z, plant.turn_rad.to_bits(), plant.plan_size.to_bits(), plant.seed]
     };
     planted.iter().map(bits).collect()
 }
@@ -290,7 +290,7 @@ proptest! {
             for cell in planter.cells().into_iter().flatten().chain([IVec2::ZERO, IVec2::MAX, IVec2::MIN]) {
                 planter.plant(cell, &LevelGround(1.0), &mut planted);
                 for plant in &planted {
-                    prop_assert!(plant.position.is_finite() && plant.size > 0.0 && plant.age_years.is_finite());
+                    prop_assert!(plant.position.is_finite() && plant.plan_size > 0.0 && plant.age_years.is_finite());
                     prop_assert_eq!(planter.cell_at(map_place(plant).as_vec2()), cell);
                 }
             }

@@ -1,0 +1,171 @@
+//! Tiles of a forest: squares of cells, each planted once, in one go, for all that need its plants.
+//!
+//! A full plant has 44 bytes. The store of stems packs it into 16, and its impostor has 76; to keep the full plants of a million trees, too,
+//! would cost half as much again. So a planted tile is shared by those who need it when it comes, and goes when they have what they need:
+//! the stems in the store, the meshes of impostors (which wait for the atlases of their species), and the near trees. Only where a viewer
+//! comes near to a tile long after it was planted are cells planted again, one by one, for the near trees: that is one cell in a hundred
+//! of those that are known.
+
+use crate::scatter::{Ground, Planted, Planter};
+use bevy::{math::IVec2, platform::hash::FixedState};
+use std::hash::{BuildHasher, Hasher};
+
+/// Cells along a side of a tile, at least.
+const MIN_CELLS: i32 = 4;
+const MAX_CELLS: i32 = 64;
+/// No more tiles than this from a viewer to the border: a wide view has larger tiles, not more draws.
+const TILES_TO_BORDER: f32 = 20.0;
+
+/// Cells along a side of a tile, a power of two, where cells with that side, m, are known so far, m.
+pub(super) fn cells_of_tile(known_m: f32, cell_m: f32) -> i32 {
+    let mut cells = MIN_CELLS;
+    while known_m > TILES_TO_BORDER * cells as f32 * cell_m && cells < MAX_CELLS {
+        cells *= 2;
+    }
+    cells
+}
+
+/// The plants of a tile.
+pub(super) struct PlantedTile {
+    /// The tile's first cell, and how many there are along a side.
+    first: IVec2,
+    side: i32,
+    /// Cell after cell, row after row.
+    plants: Vec<Planted>,
+    /// Where the plants of each cell end.
+    ends: Box<[u32]>,
+    fingerprint: u64,
+}
+
+impl PlantedTile {
+    /// Plants a tile of `side` cells along a side.
+    pub fn plant(planter: &Planter, ground: &impl Ground, tile: IVec2, side: i32) -> Self {
+        let first = tile * side;
+        let (mut plants, mut planted) = (Vec::new(), Vec::new());
+        let mut ends = Vec::with_capacity((side * side) as usize);
+        for cell in 0..side * side {
+            planter.plant(first + IVec2::new(cell % side, cell / side), ground, &mut planted);
+            plants.append(&mut planted);
+            ends.push(plants.len() as u32);
+        }
+        plants.shrink_to_fit();
+        let fingerprint = fingerprint(&plants, &ends);
+        Self { first, side, plants, ends: ends.into(), fingerprint }
+    }
+
+    /// All of its plants.
+    pub fn plants(&self) -> &[Planted] {
+        &self.plants
+    }
+
+    /// Its cells, and the plants of each.
+    pub fn cells(&self) -> impl Iterator<Item = (IVec2, &[Planted])> {
+        (0..self.side * self.side).map(|number| {
+            let cell = self.first + IVec2::new(number % self.side, number / self.side);
+            (cell, self.cell(cell))
+        })
+    }
+
+    /// The plants of one of its cells.
+    pub fn cell(&self, cell: IVec2) -> &[Planted] {
+        let at = cell - self.first;
+        let number = (at.y * self.side + at.x) as usize;
+        let begin = number.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.plants[begin as usize..self.ends[number] as usize]
+    }
+
+    /// The same for tiles with the same plants; with others the same once in 2^64.
+    pub fn fingerprint(&self) -> u64 {
+        self.fingerprint
+    }
+}
+
+fn fingerprint(plants: &[Planted], ends: &[u32]) -> u64 {
+    let mut hasher = FixedState::default().build_hasher();
+    ends.iter().for_each(|end| hasher.write_u32(*end));
+    for plant in plants {
+        let Planted { position, turn_rad, plan_size, vigour, age_years, season_days, tint, species, seed } = *plant;
+        let [x, y, z] = position.to_array();
+        for value in [x, y, z, turn_rad, plan_size, vigour, age_years, season_days, tint] {
+            hasher.write_u32(value.to_bits());
+        }
+        hasher.write_u32(seed);
+        hasher.write_u8(species);
+    }
+    hasher.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        scatter::{
+            ForestPlan, LevelGround,
+            plan::{Area, Stock},
+        },
+        tree::growth::age::Age,
+    };
+
+    fn planter(density_per_ha: f32) -> Planter {
+        let area = Area { density_per_ha, ..Area::default() };
+        Planter::new(&ForestPlan { areas: vec![area], ..ForestPlan::default() }).expect("a valid plan")
+    }
+
+    #[test]
+    fn a_tile_holds_what_its_cells_hold_when_they_are_planted_alone() {
+        let (planter, ground) = (planter(300.0), LevelGround::default());
+        for tile in [IVec2::ZERO, IVec2::new(-1, 0), IVec2::new(-1, -1)] {
+            let planted = PlantedTile::plant(&planter, &ground, tile, 4);
+            let mut alone = Vec::new();
+            let mut count = 0;
+            for (cell, plants) in planted.cells() {
+                planter.plant(cell, &ground, &mut alone);
+                assert_eq!(plants, alone);
+                assert_eq!(cell.div_euclid(IVec2::splat(4)), tile);
+                count += plants.len();
+            }
+            assert!(count == planted.plants().len());
+        }
+    }
+
+    #[test]
+    fn a_plant_has_the_size_that_is_reckoned_with() {
+        assert_eq!(size_of::<Planted>(), 44);
+    }
+
+    #[test]
+    fn fingerprints_tell_tiles_apart() {
+        let ground = LevelGround::default();
+        let of = |density_per_ha, tile| PlantedTile::plant(&planter(density_per_ha), &ground, tile, 4).fingerprint();
+        let here = of(300.0, IVec2::ZERO);
+        assert_eq!(here, of(300.0, IVec2::ZERO));
+        assert_ne!(here, of(310.0, IVec2::ZERO));
+        assert_ne!(here, of(300.0, IVec2::new(-1, 0)));
+    }
+
+    /// What [`Planted`] says of its two sizes.
+    #[test]
+    fn a_plan_and_a_species_give_a_tree_nearly_the_same_height() {
+        let age = Age::default();
+        let (k, p) = (age.height_rate_per_year, age.height_shape);
+        let full_grown_years = -(1.0 - 0.95_f32.powf(p.recip())).ln() / k;
+        // The species has its heights relative to that when mature.
+        let greatest = (1.0 - (-k * age.mature_years).exp()).powf(-p);
+        for age_years in [5.0, 10.0, 20.0, 40.0, 80.0, 120.0, 200.0, 400.0] {
+            let stock =
+                Stock { age_years, age_spread_years: 0.0, size_spread: 0.0, full_grown_years, ..Stock::default() };
+            let area = Area { stock: vec![stock], ..Area::default() };
+            let planter = Planter::new(&ForestPlan { areas: vec![area], ..ForestPlan::default() }).expect("a plan");
+            let tile = PlantedTile::plant(&planter, &LevelGround::default(), IVec2::ZERO, 4);
+            let plan_size = tile.plants()[0].plan_size;
+            let height = age.stage(age_years).height / greatest;
+            assert!((plan_size - height).abs() < 0.08, "{age_years} years: {plan_size} and {height}");
+        }
+    }
+
+    #[test]
+    fn wide_views_have_larger_tiles() {
+        assert_eq!([2500.0, 5120.0, 10_000.0, 50_000.0].map(|known_m| cells_of_tile(known_m, 64.0)), [4, 4, 8, 64]);
+        assert_eq!(cells_of_tile(5e4, 1024.0), 4);
+    }
+}
