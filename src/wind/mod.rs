@@ -43,7 +43,7 @@ mod synthesis;
 
 pub use crate::constants::REFERENCE_HEIGHT_M;
 pub use components::WindCell;
-pub(crate) use cross_fade::{CrossFade, FadeStep};
+pub(crate) use ecs::active::NumberedWind;
 pub use ecs::{
     active::{ActiveWind, Wind},
     clock::WindClock,
