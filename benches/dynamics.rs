@@ -8,7 +8,7 @@ use bevy::math::{Mat3, Vec2, Vec3, Vec4};
 use bevy_windwood::{
     dynamics::{
         BeamDynamics, BeamPose, ExactStep, FrequencyClasses, LoadBasis, LoadBasisKind, NO_PARENT, OscillatorState,
-        ResponseTable, TreePoser,
+        ResponseTable, TablePlace, TreePoser,
     },
     wind::cross_flow_pressure,
 };
@@ -42,7 +42,7 @@ fn pose(criterion: &mut Criterion) {
         let mut tau_s = 0.0;
         bencher.iter(|| {
             tau_s += 1.0 / 60.0;
-            table.responses(3, tau_s, &mut responses);
+            table.responses(&TablePlace::on_column(3, tau_s), &mut responses);
             poser.pose(&responses, &mut poses);
             black_box(&mut poses);
         });
@@ -125,7 +125,7 @@ impl OwnOscillators {
     }
 
     fn step(&mut self, table: &ResponseTable, tau_s: f64) {
-        let pressure = cross_flow_pressure(table.velocity(self.column, tau_s), self.direction);
+        let pressure = cross_flow_pressure(table.velocity(&TablePlace::on_column(self.column, tau_s)), self.direction);
         let load = Vec2::new(pressure.dot(self.across[0]), pressure.dot(self.across[1]));
         for ((state, step), share) in self.states.iter_mut().zip(&self.steps).zip(self.shares) {
             *state = step.advance(*state, share * self.load, share * load);

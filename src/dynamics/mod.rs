@@ -35,4 +35,4 @@ pub use frequency_classes::FrequencyClasses;
 pub use leaf::{LeafResponse, RestingLeaf};
 pub use load_basis::{LoadBasis, LoadBasisKind};
 pub use pose::{BeamDynamics, BeamPose, MODE_SHAPE, NO_PARENT, SLOPE_TIP, TIP_ANGLE_LIMIT, TreePoser};
-pub use response::ResponseTable;
+pub use response::{ResponseTable, TablePlace};

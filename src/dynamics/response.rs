@@ -106,24 +106,32 @@ impl ResponseTable {
         self.samples as f64 * f64::from(self.time_step_s)
     }
 
-    /// The responses of a class in a column at a time, periodic, by a Catmull-Rom spline. Classes and columns beyond the
+    /// The responses of a class at a place of the table, periodic in time, by a Catmull-Rom spline. Classes and columns beyond the
     /// last count as the last.
-    pub fn response(&self, class: usize, column: usize, tau_s: f64) -> Vec4 {
-        self.place(tau_s).of(self.series(class, column))
+    pub fn response(&self, class: usize, place: &TablePlace) -> Vec4 {
+        self.blend(class, place, &self.spline(place))
     }
 
-    /// The responses of all classes in a column at a time; as many as `out` has room for.
-    pub fn responses(&self, column: usize, tau_s: f64, out: &mut [Vec4]) {
-        let place = self.place(tau_s);
+    /// The responses of all classes at a place; as many as `out` has room for.
+    pub fn responses(&self, place: &TablePlace, out: &mut [Vec4]) {
+        let spline = self.spline(place);
         for (class, response) in out.iter_mut().enumerate().take(self.classes.quasi_static() + 1) {
-            *response = place.of(self.series(class, column));
+            *response = self.blend(class, place, &spline);
         }
     }
 
-    /// The wind's velocity in a column at a time, m/s in wind coordinates, by a Catmull-Rom spline.
-    pub fn velocity(&self, column: usize, tau_s: f64) -> Vec3 {
-        let start = column.min(self.columns - 1) * self.samples;
-        self.place(tau_s).of(&self.velocities[start..start + self.samples]).truncate()
+    /// The wind's velocity at a place, m/s in wind coordinates, by a Catmull-Rom spline.
+    pub fn velocity(&self, place: &TablePlace) -> Vec3 {
+        let spline = self.spline(place);
+        let of_column = |column: usize| {
+            let start = column.min(self.columns - 1) * self.samples;
+            spline.of(&self.velocities[start..start + self.samples])
+        };
+        place.sum(of_column).truncate()
+    }
+
+    fn blend(&self, class: usize, place: &TablePlace, spline: &SplinePlace) -> Vec4 {
+        place.sum(|column| spline.of(self.series(class, column)))
     }
 
     fn series(&self, class: usize, column: usize) -> &[Vec4] {
@@ -132,8 +140,32 @@ impl ResponseTable {
         &self.values[start..start + self.samples]
     }
 
-    fn place(&self, tau_s: f64) -> SplinePlace {
-        SplinePlace::new(tau_s / f64::from(self.time_step_s), self.samples)
+    fn spline(&self, place: &TablePlace) -> SplinePlace {
+        SplinePlace::new(place.tau_s / f64::from(self.time_step_s), self.samples)
+    }
+}
+
+/// Where a tree stands in a [`ResponseTable`]: the columns of the wind about it with their weights, and a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TablePlace {
+    /// Lateral columns.
+    pub columns: [usize; 4],
+    /// Their weights.
+    pub weights: [f32; 4],
+    /// Time in the wind's period, s.
+    pub tau_s: f64,
+}
+
+impl TablePlace {
+    /// On a column.
+    pub fn on_column(column: usize, tau_s: f64) -> Self {
+        Self { columns: [column; 4], weights: [1.0, 0.0, 0.0, 0.0], tau_s }
+    }
+
+    /// The weighted sum over the columns. One without a weight is not read.
+    fn sum(&self, of_column: impl Fn(usize) -> Vec4) -> Vec4 {
+        let weighted = self.columns.iter().zip(self.weights).filter(|(_, weight)| *weight != 0.0);
+        weighted.map(|(&column, weight)| weight * of_column(column)).sum()
     }
 }
 

@@ -3,7 +3,7 @@
 use super::response::{SwaySettings, WindResponse};
 use crate::{
     background::drop_in_background,
-    wind::{ActiveWind, CrossFade, FadeStep, Wind, WindClock, WindField},
+    wind::{ActiveWind, NumberedWind, WindClock},
 };
 use bevy::{
     prelude::*,
@@ -13,22 +13,32 @@ use std::sync::Arc;
 
 /// The tables that trees read now, in two slots between which a change of the wind fades.
 ///
+/// The fade is that of [`ActiveWind`]: each new wind waits until its tables are there, and then field and tables begin together.
 /// A slot is rewritten only while it has no weight, now and one frame ago, so neither poses nor motion vectors ever jump.
 #[derive(Resource, Default)]
 pub struct ActiveSway {
-    responses: Option<CrossFade<Arc<WindResponse>>>,
-    building: Option<Task<WindResponse>>,
-    /// A wind whose tables are built, until it begins to blow.
-    incoming: Option<Arc<WindResponse>>,
-    /// Whether an incoming wind has to be released before it begins.
+    slots: [Option<NumberedResponse>; 2],
+    /// The slot of the wind that fades out, or that blows alone.
+    from: usize,
+    building: Option<(u64, Task<WindResponse>)>,
+    /// The tables of the incoming wind, until they are released.
+    incoming: Option<NumberedResponse>,
+    /// Whether they have to be released before their wind begins.
     holds_incoming: bool,
     is_released: bool,
-    source: Option<(Arc<WindField>, SwaySettings)>,
-    /// Whether slot B holds the fade's `from` and slot A its `to`.
-    swapped: bool,
+    /// Tables of winds that are released and have not begun.
+    ready: Vec<NumberedResponse>,
+    settings: SwaySettings,
+    weight: f32,
     blend: f32,
     previous_blend: f32,
     generation: u64,
+}
+
+/// The tables of the wind of a number.
+struct NumberedResponse {
+    number: u64,
+    response: Arc<WindResponse>,
 }
 
 /// One wind with its weight.
@@ -43,25 +53,20 @@ pub struct WeightedResponse<'a> {
 impl ActiveSway {
     /// The one or two winds that blow now.
     pub fn now(&self) -> impl Iterator<Item = WeightedResponse<'_>> {
-        let (from, to, weight) = match &self.responses {
-            Some(fade) => (Some(fade.from()), fade.to(), fade.weight()),
-            None => (None, None, 0.0),
+        let weighted = |slot: usize, weight: f32| {
+            self.slots[slot].as_ref().map(|wind| WeightedResponse { response: &wind.response, weight })
         };
-        let from = from.map(|response| WeightedResponse { response, weight: 1.0 - weight });
-        let to = to.map(|response| WeightedResponse { response, weight });
-        from.into_iter().chain(to)
+        [weighted(self.from, 1.0 - self.weight), weighted(1 - self.from, self.weight)].into_iter().flatten()
     }
 
     /// Whether the first tables are there and trees sway.
     pub fn is_ready(&self) -> bool {
-        self.responses.is_some()
+        self.slots[self.from].is_some()
     }
 
     /// Whether nothing is being built and nothing fades.
     pub fn is_settled(&self) -> bool {
-        self.building.is_none()
-            && self.incoming.is_none()
-            && self.responses.as_ref().is_some_and(|fade| fade.to().is_none())
+        self.building.is_none() && self.incoming.is_none() && self.ready.is_empty() && self.now().count() == 1
     }
 
     /// Grows whenever [`now`](Self::now) yields other winds than before.
@@ -71,8 +76,7 @@ impl ActiveSway {
 
     /// The winds in the slots A and B, for renderers.
     pub fn slots(&self) -> [Option<&Arc<WindResponse>>; 2] {
-        let Some(fade) = &self.responses else { return [None, None] };
-        if self.swapped { [fade.to(), Some(fade.from())] } else { [Some(fade.from()), fade.to()] }
+        self.slots.each_ref().map(|slot| slot.as_ref().map(|wind| &wind.response))
     }
 
     /// Weight of slot B now and one frame ago, for renderers.
@@ -88,7 +92,7 @@ impl ActiveSway {
 
     /// The wind that waits.
     pub fn incoming(&self) -> Option<&Arc<WindResponse>> {
-        self.incoming.as_ref()
+        self.incoming.as_ref().map(|wind| &wind.response)
     }
 
     /// Lets the wind that waits begin.
@@ -97,67 +101,87 @@ impl ActiveSway {
     }
 }
 
-/// Starts a build when a new field blows or the settings have changed, and no build runs.
-pub(super) fn rebuild_tables(wind: Res<ActiveWind>, settings: Res<SwaySettings>, mut sway: ResMut<ActiveSway>) {
-    let Some(field) = wind.newest() else { return };
+/// Starts a build when a wind waits for its tables, and lets the newest wind come in again when the settings have changed.
+pub(super) fn rebuild_tables(mut wind: ResMut<ActiveWind>, settings: Res<SwaySettings>, mut sway: ResMut<ActiveSway>) {
     if sway.building.is_some() || sway.incoming.is_some() {
         return;
     }
     let wanted = settings.clamped();
-    let same = |(built, with): &(Arc<WindField>, SwaySettings)| Arc::ptr_eq(built, field) && *with == wanted;
-    if sway.source.as_ref().is_some_and(same) {
-        return;
-    }
     if settings.is_changed() && wanted != *settings {
         warn!("sway: {:?} is out of range; {wanted:?} is used", *settings);
     }
-    sway.source = Some((field.clone(), wanted.clone()));
-    let field = field.clone();
-    sway.building = Some(AsyncComputeTaskPool::get().spawn(async move { WindResponse::new(field, &wanted) }));
+    if wind.incoming().is_none() && sway.is_ready() && sway.settings != wanted {
+        wind.repeat_newest();
+    }
+    let Some(NumberedWind { number, field }) = wind.incoming().cloned() else { return };
+    if sway.ready.iter().any(|wind| wind.number == number) {
+        return;
+    }
+    sway.settings = wanted.clone();
+    let build = AsyncComputeTaskPool::get().spawn(async move { WindResponse::new(field, &wanted) });
+    sway.building = Some((number, build));
 }
 
-/// Takes over tables that have been built, and moves the fade on. The resource counts as changed only in frames in which another wind is
+/// Takes over tables that have been built, and releases their wind.
+pub(super) fn finish_tables(mut wind: ResMut<ActiveWind>, mut sway: ResMut<ActiveSway>) {
+    let sway = sway.bypass_change_detection();
+    if let Some((number, task)) = &mut sway.building
+        && let Some(built) = block_on(poll_once(task))
+    {
+        sway.incoming = Some(NumberedResponse { number: *number, response: Arc::new(built) });
+        sway.is_released = !sway.holds_incoming;
+        sway.building = None;
+    }
+    if let Some(tables) = sway.incoming.take_if(|_| sway.is_released) {
+        sway.ready.push(tables);
+        // What it answers does not change by this.
+        wind.bypass_change_detection().release_incoming();
+    }
+}
+
+/// Puts the tables of the winds that blow into the slots. The resource counts as changed only in frames in which another wind is
 /// taken over or fades.
-pub(super) fn fade_tables(wind: Res<Wind>, time: Res<Time>, mut sway: ResMut<ActiveSway>) {
-    if sway.bypass_change_detection().advance(wind.fade_s, time.delta_secs()) {
+pub(super) fn follow_wind(wind: Res<ActiveWind>, mut sway: ResMut<ActiveSway>) {
+    if sway.bypass_change_detection().follow(&wind) {
         sway.set_changed();
     }
 }
 
 impl ActiveSway {
-    /// Moves on by a frame. Returns whether it yields anything else than in the last one.
-    fn advance(&mut self, fade_s: f32, delta_s: f32) -> bool {
-        if let Some(built) = self.building.as_mut().and_then(|task| block_on(poll_once(task))) {
-            self.building = None;
-            self.incoming = Some(Arc::new(built));
-            self.is_released = !self.holds_incoming;
-        }
+    /// Follows the winds' transition by a frame. Returns whether it yields anything else than in the last one.
+    fn follow(&mut self, wind: &ActiveWind) -> bool {
+        let Some((from, to, weight)) = wind.transition() else { return false };
         let generation = self.generation;
-        if let Some(built) = self.incoming.take_if(|_| self.is_released) {
-            match &mut self.responses {
-                Some(fade) => fade.succeed(built, fade_s).into_iter().for_each(drop_in_background),
-                None => {
-                    self.responses = Some(CrossFade::new(built));
-                    self.generation += 1;
-                }
-            }
+        // The slot that has faded in keeps its tables: it is the one that the next fade starts from.
+        if !self.holds(self.from, from.number) && self.holds(1 - self.from, from.number) {
+            self.from = 1 - self.from;
         }
+        self.fill(self.from, Some(from.number));
+        self.fill(1 - self.from, to.map(|wind| wind.number));
+        for overtaken in self.ready.extract_if(.., |tables| !wind.has(tables.number)) {
+            drop_in_background(overtaken.response);
+        }
+        self.weight = weight;
         let blends = [self.blend, self.previous_blend];
         self.previous_blend = self.blend;
-        let Some(fade) = &mut self.responses else { return false };
-        match fade.advance(delta_s) {
-            FadeStep::Began => self.generation += 1,
-            // The slot that has faded in keeps its tables: now it is the one that the next fade starts from.
-            FadeStep::Finished(gone) => {
-                drop_in_background(gone);
-                self.swapped = !self.swapped;
-                self.generation += 1;
-            }
-            FadeStep::Running | FadeStep::Rest => {}
-        }
-        let weight = fade.weight();
-        self.blend = if self.swapped { 1.0 - weight } else { weight };
+        self.blend = if self.from == 1 { 1.0 - weight } else { weight };
         self.generation != generation || blends != [self.blend, self.previous_blend]
+    }
+
+    fn holds(&self, slot: usize, number: u64) -> bool {
+        self.slots[slot].as_ref().is_some_and(|tables| tables.number == number)
+    }
+
+    /// Puts the tables of a wind into a slot.
+    fn fill(&mut self, slot: usize, number: Option<u64>) {
+        if self.slots[slot].as_ref().map(|tables| tables.number) == number {
+            return;
+        }
+        let place = self.ready.iter().position(|tables| Some(tables.number) == number);
+        let tables = place.map(|place| self.ready.swap_remove(place));
+        let replaced = std::mem::replace(&mut self.slots[slot], tables);
+        replaced.into_iter().for_each(|tables| drop_in_background(tables.response));
+        self.generation += 1;
     }
 }
 

@@ -103,11 +103,11 @@ impl TreePose {
         self.free_angles.clear();
         self.free_angles.resize(self.beams.len(), Vec3A::ZERO);
         for (poser, WeightedResponse { response, weight }) in self.posers.iter().zip(sway.now()) {
-            let (column, tau_s) = response.place(stands.translation(), time_s);
+            let place = response.place(stands.translation(), time_s);
             self.responses.resize(response.table.classes.count, Vec4::ZERO);
-            response.table.responses(column, tau_s, &mut self.responses);
+            response.table.responses(&place, &mut self.responses);
             poser.add_free_angles(&self.responses, weight, &mut self.free_angles);
-            let velocity = response.field.frame().to_world(response.table.velocity(column, tau_s));
+            let velocity = response.field.frame().to_world(response.table.velocity(&place));
             self.wind += weight * (local_from_world * velocity);
         }
         self.posers[0].pose_free(&self.free_angles, &mut self.beams);

@@ -1,7 +1,7 @@
 //! Registers the motion of trees, and their drawing where there is rendering.
 
 use super::{
-    active::{ActiveSway, fade_tables, is_windy, rebuild_tables},
+    active::{ActiveSway, finish_tables, follow_wind, is_windy, rebuild_tables},
     articulated::{articulate_trees, pose_beams, pose_trees, turn_leaves},
     response::SwaySettings,
 };
@@ -10,7 +10,7 @@ use crate::{
     schedule::{WindwoodSystems, configure_sets},
     timing::timed,
     tree::TreePlugin,
-    wind::WindPlugin,
+    wind::{ActiveWind, WindPlugin},
 };
 use bevy::prelude::*;
 
@@ -26,7 +26,9 @@ impl Plugin for SwayPlugin {
             .init_resource::<SwaySettings>()
             .init_resource::<ActiveSway>()
             .configure_sets(PostUpdate, WindwoodSystems::Pose.run_if(is_windy));
-        let tables = timed!(app, rebuild_tables, fade_tables);
+        // Each new wind waits for its tables, so that trees and whatever else is in the wind change together.
+        app.world_mut().resource_mut::<ActiveWind>().hold_incoming();
+        let tables = timed!(app, rebuild_tables, finish_tables, follow_wind);
         let articulate = timed!(app, articulate_trees);
         let pose_trees = timed!(app, pose_trees);
         let pose_parts = timed!(app, pose_beams, turn_leaves);

@@ -5,7 +5,7 @@ use crate::{
         direction_map::LoadCoefficients,
         frequency_classes::FrequencyClasses,
         load_basis::{LoadBasis, LoadBasisKind},
-        response::ResponseTable,
+        response::{ResponseTable, TablePlace},
     },
     wind::{REFERENCE_HEIGHT_M, WindField, cross_flow_pressure},
 };
@@ -81,14 +81,13 @@ impl WindResponse {
         Self { field, basis, table, strongest_pressure }
     }
 
-    /// Where a tree at `position` stands in the periodic tables: its lateral column, and the time of the field there, s.
-    pub fn place(&self, position: Vec3, time_s: f64) -> (usize, f64) {
-        let frame = self.field.frame();
-        let columns = self.table.columns;
-        let spacing = self.field.settings().resolution.column_spacing_m;
-        let nearest = (position.dot(frame.across) / spacing).round();
-        let column = nearest.rem_euclid(columns as f32) as usize;
-        (column.min(columns - 1), time_s - self.field.delay_s(position.dot(frame.along)))
+    /// Where a tree at `position` stands in the periodic tables at a time: it reads the same wind there as
+    /// [`WindField::sample`] gives at the height of the tables.
+    pub fn place(&self, position: Vec3, time_s: f64) -> TablePlace {
+        let position = self.field.frame().to_wind(position);
+        let taps = self.field.lateral().taps(position.z);
+        let tau_s = time_s - self.field.delay_s(position.x, position.z);
+        TablePlace { columns: taps.indices, weights: taps.weights, tau_s }
     }
 }
 
@@ -134,7 +133,8 @@ mod tests {
             let direction = Vec3::new(odd(), odd(), odd()).normalize_or(Vec3::Y);
             let class = random.random_range(0..response.table.classes.count);
             let time_s = random.random_range(0.0..response.table.period_s());
-            let signals = response.table.response(class, random.random_range(0..response.table.columns), time_s);
+            let across = Vec3::Z * random.random_range(-500.0..500.0_f32);
+            let signals = response.table.response(class, &response.place(across, time_s));
             greatest = greatest.max(response.basis.map().coefficients(direction).load(signals).length());
         }
         let strongest = response.strongest_pressure;

@@ -71,6 +71,12 @@ impl<T> CrossFade<T> {
         self.to.as_ref()
     }
 
+    /// All values that blow or will: one to three.
+    pub fn values(&self) -> impl Iterator<Item = &T> {
+        let waiting = self.waiting.as_ref().map(|(next, _)| next);
+        [Some(&self.from), self.to.as_ref(), waiting].into_iter().flatten()
+    }
+
     /// The value in force once all fades are done.
     pub fn newest(&self) -> &T {
         self.waiting.as_ref().map(|(next, _)| next).or(self.to.as_ref()).unwrap_or(&self.from)

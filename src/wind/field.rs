@@ -4,14 +4,18 @@
 //! at a distance x along the wind is what it was here x / U ago. The field is synthesised over time, and read at
 //!
 //! ```text
-//! tau = t - along / U_c
+//! tau = t - along / U_c - delay(across)
 //! ```
 //!
-//! The whole field drifts at one speed `U_c`, that of the reference height, so that it stays coherent in height.
+//! The whole field drifts at one speed `U_c`, that of the reference height, so that it stays coherent in height. The delay across
+//! the wind is that of [`LateralRule`].
+//!
+//! The three components are independent. So the field has no shear stress, which in a real boundary layer is `-<u w> = u*^2`.
 
 use super::{
     frame::WindFrame,
-    interpolation::Taps,
+    interpolation::{BlendTaps, SplineTaps},
+    lateral::LateralRule,
     profile::LogProfile,
     settings::FieldSettings,
     synthesis::{self, Turbulence},
@@ -25,13 +29,15 @@ use bevy::{
 /// Turbulence drifts at least this fast, m/s, even in a calm: so places along the wind differ by finite times.
 const SLOWEST_DRIFT_M_S: f32 = 0.5;
 
-/// A wind field: velocity anywhere in the world at any time, periodic in time and across the wind.
+/// A wind field: velocity anywhere in the world at any time, periodic in time. One width farther across the wind the same columns
+/// come again, later: see [`repeat_delay_s`](Self::repeat_delay_s).
 ///
 /// Reading it allocates nothing and takes any position and time, negative ones too.
 pub struct WindField {
     settings: FieldSettings,
     frame: WindFrame,
     profile: LogProfile,
+    lateral: LateralRule,
     turbulence: Turbulence,
 }
 
@@ -46,7 +52,15 @@ impl WindField {
     pub fn synthesise(settings: &FieldSettings) -> Result<Self, SettingError> {
         settings.validate()?;
         let profile = LogProfile::from_reference(settings.speed, settings.roughness_m, settings.displacement_m);
+        let resolution = &settings.resolution;
+        let lateral = LateralRule::new(
+            resolution.columns as usize,
+            resolution.column_spacing_m,
+            settings.speed.max(SLOWEST_DRIFT_M_S),
+            settings.coherence.along.lateral,
+        );
         Ok(Self {
+            lateral,
             frame: WindFrame::new(settings.direction),
             turbulence: synthesis::synthesise(settings, &profile, ComputeTaskPool::try_get().map(|pool| &**pool)),
             profile,
@@ -56,9 +70,8 @@ impl WindField {
 
     /// Velocity of the air, m/s, in world coordinates: mean wind and turbulence.
     ///
-    /// `position` is in world coordinates, m, with y the height above ground. Between samples the turbulence is
-    /// interpolated (Catmull-Rom), which smooths what neighbouring samples do not share: in the middle between columns
-    /// and levels of the default field the standard deviation is 0.86 of that on them. Above the highest and below the
+    /// `position` is in world coordinates, m, with y the height above ground. Between the columns and levels of the field the
+    /// variance of each component is that on them, to some 5%. Above the highest and below the
     /// lowest level that level's turbulence holds. A place on an axis of the field that is not finite counts as 0.
     pub fn sample(&self, position: Vec3, time_s: f64) -> Vec3 {
         let mean = self.frame.along * self.profile.speed_at(position.y);
@@ -70,10 +83,9 @@ impl WindField {
         let position = self.frame.to_wind(position);
         let resolution = &self.settings.resolution;
         let time_samples = resolution.time_samples as usize;
-        let tau_s = time_s - self.delay_s(position.x);
-        let time = Taps::periodic(tau_s / f64::from(resolution.time_step_s), time_samples);
-        let across = f64::from(position.z) / f64::from(resolution.column_spacing_m);
-        let column = Taps::periodic(across, resolution.columns as usize);
+        let tau_s = time_s - self.delay_s(position.x, position.z);
+        let time = SplineTaps::periodic(tau_s / f64::from(resolution.time_step_s), time_samples);
+        let column = self.lateral.taps(position.z);
         let level = self.level_taps(position.y);
 
         let mut velocity = Vec3A::ZERO;
@@ -91,12 +103,13 @@ impl WindField {
     /// One velocity per time sample at column `column` (counted round the period) and `height_m` above ground, m/s, in
     /// wind coordinates (along with the mean wind, up, across). Replaces what is in `out`.
     ///
-    /// Column c is at c times the column spacing across the wind; the samples are those of along = 0.
+    /// Column c is at c times the column spacing across the wind. At along = 0 it is passed by these samples later by the column's
+    /// share of [`repeat_delay_s`](Self::repeat_delay_s).
     pub fn column_velocities(&self, column: usize, height_m: f32, out: &mut Vec<Vec3>) {
         let resolution = &self.settings.resolution;
         let column = column % resolution.columns as usize;
         let mean = Vec3A::X * self.profile.speed_at(height_m);
-        let Taps { indices, weights } = self.level_taps(height_m);
+        let BlendTaps { indices, weights } = self.level_taps(height_m);
         let [a, b, c, d] = indices.map(|level| self.series(column, level));
         out.clear();
         out.extend((0..resolution.time_samples as usize).map(|time| {
@@ -105,9 +118,15 @@ impl WindField {
         }));
     }
 
-    /// How much later than at along = 0 the same turbulence passes a place `along_m` down the wind, s.
-    pub(crate) fn delay_s(&self, along_m: f32) -> f64 {
-        f64::from(along_m) / f64::from(self.convective_speed_m_s())
+    /// How much later than at the origin of wind coordinates a sample passes a place `along_m` down the wind and `across_m`
+    /// across it, s.
+    pub(crate) fn delay_s(&self, along_m: f32, across_m: f32) -> f64 {
+        f64::from(along_m) / f64::from(self.convective_speed_m_s()) + self.lateral.delay_s(across_m)
+    }
+
+    /// How it is read across the wind.
+    pub(crate) fn lateral(&self) -> &LateralRule {
+        &self.lateral
     }
 
     /// What the field was made from.
@@ -130,9 +149,18 @@ impl WindField {
         self.settings.resolution.period_s()
     }
 
-    /// The distance across the wind after which it repeats, m.
+    /// The distance across the wind after which its columns come again, m: each later by [`repeat_delay_s`](Self::repeat_delay_s).
     pub fn width_m(&self) -> f64 {
         self.settings.resolution.width_m()
+    }
+
+    /// How much later the same gusts blow one [`width_m`](Self::width_m) farther across the wind, s.
+    ///
+    /// So the same gust blows at the same moment only where so many widths add up to a whole number of periods: 21 of them, or
+    /// 2.7 km, for the default field, and in proportion to the speed. Exactly so only on the columns: the lags between them do
+    /// not repeat.
+    pub fn repeat_delay_s(&self) -> f64 {
+        f64::from(self.lateral.slowness_s_m) * self.width_m()
     }
 
     /// The speed with which the turbulence drifts along, m/s: the mean speed at 10 m, but at least 0.5.
@@ -146,9 +174,9 @@ impl WindField {
         self.turbulence.resolved_fraction
     }
 
-    fn level_taps(&self, height_m: f32) -> Taps {
+    fn level_taps(&self, height_m: f32) -> BlendTaps {
         let resolution = &self.settings.resolution;
-        Taps::held(height_m / resolution.level_spacing_m - 1.0, resolution.levels as usize)
+        BlendTaps::in_height(height_m / resolution.level_spacing_m - 1.0, resolution.levels as usize)
     }
 
     fn series(&self, column: usize, level: usize) -> &[Vec3A] {
@@ -191,20 +219,26 @@ mod tests {
     }
 
     #[test]
-    fn field_is_periodic_in_time_and_across_the_wind() {
+    fn field_is_periodic_in_time_and_later_one_width_across_the_wind() {
         let field = small_field();
-        let across = field.frame().across * field.width_m() as f32;
         for (position, time_s) in places() {
             let here = field.sample(position, time_s);
             assert!(field.sample(position, time_s + 5.0 * field.period_s()).abs_diff_eq(here, 1e-5));
-            // The position itself rounds: some 1e-5 m at 300 m, with slopes of about 1 m/s a metre.
-            assert!(field.sample(position - across, time_s).abs_diff_eq(here, 1e-4));
+        }
+        for column in -9..9 {
+            let column_m = column as f32 * field.settings().resolution.column_spacing_m;
+            let at = |across_m: f32| field.frame().to_world(Vec3::new(3.0, 7.0, across_m));
+            let here = field.sample(at(column_m), 2.3);
+            let there = field.sample(at(column_m + field.width_m() as f32), 2.3 + field.repeat_delay_s());
+            // The place itself rounds: some 1e-5 m, with slopes of about 1 m/s a metre.
+            assert!(there.abs_diff_eq(here, 2e-4), "{there} is not {here}");
         }
     }
 
     #[test]
     fn turbulence_drifts_with_the_mean_wind() {
-        let field = small_field();
+        // Along x, so that the place across does not round: the lags between columns change by seconds in a metre.
+        let field = WindField::synthesise(&FieldSettings { direction: Dir2::X, ..small_settings() }).unwrap();
         for (position, time_s) in places() {
             let later = field.sample(position + field.frame().along * 20.0, time_s + 20.0 / 8.0);
             // As above; and the round trip through 20 m moves the time by some 1e-6 s.
@@ -221,7 +255,9 @@ mod tests {
             assert_eq!(velocities.len(), 64);
             for (time, velocity) in velocities.iter().enumerate() {
                 let position = field.frame().to_world(Vec3::new(0.0, height_m, column as f32 * 8.0));
-                let sampled = field.frame().to_wind(field.sample(position, time as f64 / 16.0));
+                let later_s = column as f64 / 8.0 * field.repeat_delay_s();
+                let sampled = field.frame().to_wind(field.sample(position, time as f64 / 16.0 + later_s));
+                // The delay rounds to some 1e-7 s; weights on a column round to some 1e-7 of several m/s.
                 assert!(sampled.abs_diff_eq(*velocity, 1e-4), "{sampled} is not {velocity}");
             }
         }

@@ -9,11 +9,12 @@
 //!    time and across the wind.
 //! 4. The realisation drifts along with the mean wind (Taylor's hypothesis, equation 14). So [`WindField::sample`] gives
 //!    the velocity at any place and time.
-//! 5. [`cross_flow_pressure`] is the load of that velocity on a slender body (equation 15).
+//! 5. Between the columns of the realisation, and beyond the last of them, `lateral` keeps its power and coherence.
+//! 6. [`cross_flow_pressure`] is the load of that velocity on a slender body (equation 15).
 //!
 //! # Files
 //! - Plain arithmetic without an app: `settings`, `frame`, `profile`, `spectrum`, `coherence`, `factorisation`,
-//!   `synthesis`, `interpolation`, `field`, `pressure`, `cross_fade`.
+//!   `synthesis`, `interpolation`, `lateral`, `field`, `pressure`, `cross_fade`.
 //! - For an app: `ecs/clock` ([`WindClock`]), `ecs/active` ([`Wind`], [`ActiveWind`]), `components` ([`WindCell`]),
 //!   `gizmos`, `plugin`.
 //!
@@ -32,6 +33,7 @@ mod frame;
 #[cfg(feature = "render")]
 mod gizmos;
 mod interpolation;
+mod lateral;
 mod plugin;
 mod pressure;
 mod profile;
@@ -41,7 +43,7 @@ mod synthesis;
 
 pub use crate::constants::REFERENCE_HEIGHT_M;
 pub use components::WindCell;
-pub(crate) use cross_fade::{CrossFade, FadeStep};
+pub(crate) use ecs::active::NumberedWind;
 pub use ecs::{
     active::{ActiveWind, Wind},
     clock::WindClock,

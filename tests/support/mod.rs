@@ -91,9 +91,8 @@ pub fn cpu_poses(sway: &ActiveSway, model: &TreeModel, tree: &Transform, time_s:
         let to_wind = wind_from_world * Mat3::from_quat(tree.rotation);
         let classes = &wind.table.classes;
         let poser = TreePoser::new(&model.beams, wind.basis.map(), classes, to_wind, tree.scale.y);
-        let (column, tau_s) = wind.place(tree.translation, time_s);
         let mut responses = vec![Vec4::ZERO; classes.count];
-        wind.table.responses(column, tau_s, &mut responses);
+        wind.table.responses(&wind.place(tree.translation, time_s), &mut responses);
         poser.pose(&responses, &mut poses);
     }
     poses

@@ -2,7 +2,9 @@
 
 use crate::report::Report;
 use bevy::math::{Vec3, Vec4};
-use bevy_windwood::dynamics::{ExactStep, FrequencyClasses, LoadBasis, LoadBasisKind, OscillatorState, ResponseTable};
+use bevy_windwood::dynamics::{
+    ExactStep, FrequencyClasses, LoadBasis, LoadBasisKind, OscillatorState, ResponseTable, TablePlace,
+};
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use rustfft::FftPlanner;
@@ -87,7 +89,7 @@ impl<'a> Experiment<'a> {
         for (&class, direct) in CLASSES.iter().zip(&self.direct) {
             let responses: Vec<Vec4> = (0..self.fine.len())
                 .step_by(stride)
-                .map(|step| table.response(class, 0, step as f64 * TIME_STEP_S / OVERSAMPLING as f64))
+                .map(|step| table.response(class, &on_column(step as f64 * TIME_STEP_S / OVERSAMPLING as f64)))
                 .collect();
             errors.extend(self.directions.iter().zip(direct).map(|(&direction, direct)| {
                 let coefficients = basis.coefficients(direction);
@@ -107,7 +109,9 @@ impl<'a> Experiment<'a> {
         let step_s = TIME_STEP_S / OVERSAMPLING as f64;
         let fine_table = ResponseTable::new(&columns, step_s as f32, &basis, self.classes, DAMPING_RATIO);
         let series = |table: &ResponseTable| -> Vec<Vec3> {
-            (0..self.fine.len()).map(|step| table.response(class, 0, step as f64 * step_s).truncate()).collect()
+            (0..self.fine.len())
+                .map(|step| table.response(class, &on_column(step as f64 * step_s)).truncate())
+                .collect()
         };
         relative_error(&series(&table), &series(&fine_table))
     }
@@ -155,6 +159,10 @@ fn integrate(fine: &[Vec3], direction: Vec3, frequency_hz: f64) -> Vec<Vec3> {
         state = step.advance(state, load[index % load.len()], load[(index + 1) % load.len()]);
     }
     motion.split_off(load.len())
+}
+
+fn on_column(tau_s: f64) -> TablePlace {
+    TablePlace::on_column(0, tau_s)
 }
 
 /// Rms of the difference of the moving parts over the rms of the moving part of the reference.

@@ -10,12 +10,13 @@ pub(crate) fn pack_wind(wind: &WindResponse) -> Vec<u8> {
     let (frame, table, map) = (wind.field.frame(), &wind.table, wind.basis.map());
     let along = frame.along;
     let across = frame.across;
+    let lateral = wind.field.lateral();
     let spacing = wind.field.settings().resolution.column_spacing_m;
     let header: [[f32; 4]; HEADER] = [
         [along.x, along.y, along.z, wind.field.convective_speed_m_s()],
         [across.x, across.y, across.z, spacing],
         [table.classes.count as f32, table.columns as f32, table.samples as f32, table.time_step_s],
-        [map.size() as f32, 1.0 / table.classes.ratio.ln(), 0.0, 0.0],
+        [map.size() as f32, 1.0 / table.classes.ratio.ln(), lateral.slowness_s_m, lateral.lag_s],
     ];
     let parts: [&[u8]; 4] = [
         bytemuck::cast_slice(&header),

@@ -1,4 +1,7 @@
 //! The wind that a game asks for, and the field in force: built in the background, then faded in.
+//!
+//! What else belongs to a wind, such as the tables of trees, fades by the same clock. Who makes it holds each new wind back
+//! until it is there ([`ActiveWind::hold_incoming`]), knows it by its number, and follows [`ActiveWind::transition`].
 
 use crate::{
     background::drop_in_background,
@@ -59,48 +62,117 @@ impl Wind {
     }
 }
 
+/// One wind of those that came one after another.
+#[derive(Clone)]
+pub(crate) struct NumberedWind {
+    /// Another number is another wind, even if the field is the same one.
+    pub number: u64,
+    pub field: Arc<WindField>,
+}
+
 /// The wind field in force, and the one that fades in while the wind changes.
 ///
 /// It counts as changed only in frames in which one of its methods answers differently than before: a build begins or
 /// ends, a new field is there, or a fade runs.
 #[derive(Resource, Default)]
 pub struct ActiveWind {
-    fields: Option<CrossFade<Arc<WindField>>>,
+    winds: Option<CrossFade<NumberedWind>>,
     build: Option<Task<Result<WindField, SettingError>>>,
     requested: Option<FieldSettings>,
+    /// A wind that is built, until it begins.
+    incoming: Option<NumberedWind>,
+    /// Whether an incoming wind has to be released before it begins.
+    holds_incoming: bool,
+    is_released: bool,
+    /// How many winds there were so far.
+    count: u64,
 }
 
 impl ActiveWind {
     /// Wind velocity in world axes, m/s, at `position` (its y is the height above ground, m) and time `time_s`.
     /// Still air until the first field is built.
     pub fn sample(&self, position: Vec3, time_s: f64) -> Vec3 {
-        let Some(fields) = &self.fields else { return Vec3::ZERO };
-        let from = fields.from().sample(position, time_s);
-        match fields.to() {
-            Some(to) => from.lerp(to.sample(position, time_s), fields.weight()),
+        let Some(winds) = &self.winds else { return Vec3::ZERO };
+        let from = winds.from().field.sample(position, time_s);
+        match winds.to() {
+            Some(to) => from.lerp(to.field.sample(position, time_s), winds.weight()),
             None => from,
         }
     }
 
     /// The newest field that has been built: the one in force once all fading is done.
     pub fn newest(&self) -> Option<&Arc<WindField>> {
-        self.fields.as_ref().map(CrossFade::newest)
+        let begun = || self.winds.as_ref().map(CrossFade::newest);
+        self.incoming.as_ref().or_else(begun).map(|wind| &wind.field)
     }
 
     /// Whether the first field is in force.
     pub fn is_ready(&self) -> bool {
-        self.fields.is_some()
+        self.winds.is_some()
     }
 
     /// Whether the wind that was asked for is in force: nothing is being built and nothing fades.
     pub fn is_settled(&self) -> bool {
-        self.build.is_none() && self.fields.as_ref().is_some_and(|fields| fields.to().is_none())
+        let is_still = |winds: &CrossFade<NumberedWind>| winds.values().count() == 1;
+        self.build.is_none() && self.incoming.is_none() && self.winds.as_ref().is_some_and(is_still)
+    }
+
+    /// From now on, each new wind waits for [`release_incoming`](Self::release_incoming) before it begins: for those that have to
+    /// prepare something that belongs to it.
+    pub(crate) fn hold_incoming(&mut self) {
+        self.holds_incoming = true;
+    }
+
+    /// The wind that waits.
+    pub(crate) fn incoming(&self) -> Option<&NumberedWind> {
+        self.incoming.as_ref()
+    }
+
+    /// Lets the wind that waits begin.
+    pub(crate) fn release_incoming(&mut self) {
+        self.is_released = true;
+    }
+
+    /// Lets the newest field come in once more, as another wind, where none waits: what belongs to it is to be prepared anew.
+    pub(crate) fn repeat_newest(&mut self) {
+        if self.incoming.is_none()
+            && let Some(field) = self.newest().cloned()
+        {
+            self.announce(field);
+        }
+    }
+
+    /// The winds that blow now, that which fades out first, and the weight of the second.
+    pub(crate) fn transition(&self) -> Option<(&NumberedWind, Option<&NumberedWind>, f32)> {
+        self.winds.as_ref().map(|winds| (winds.from(), winds.to(), winds.weight()))
+    }
+
+    /// Whether the wind of that number blows, or will.
+    pub(crate) fn has(&self, number: u64) -> bool {
+        let winds = self.winds.iter().flat_map(CrossFade::values).chain(&self.incoming);
+        winds.into_iter().any(|wind| wind.number == number)
+    }
+
+    fn announce(&mut self, field: Arc<WindField>) {
+        self.count += 1;
+        self.incoming = Some(NumberedWind { number: self.count, field });
+        self.is_released = !self.holds_incoming;
+    }
+
+    /// Lets the incoming wind begin if it is released. Returns whether it was.
+    fn take_incoming(&mut self, fade_s: f32) -> bool {
+        let Some(wind) = self.incoming.take_if(|_| self.is_released) else { return false };
+        match &mut self.winds {
+            Some(winds) => winds.succeed(wind, fade_s).into_iter().for_each(drop_in_background),
+            None => self.winds = Some(CrossFade::new(wind)),
+        }
+        true
     }
 }
 
 /// Starts a build when the wind has changed and no build runs. Changes during a build are taken up after it.
 pub(in crate::wind) fn start_field_build(wind: Res<Wind>, mut active: ResMut<ActiveWind>) {
-    if active.build.is_some() {
+    if active.build.is_some() || active.incoming.is_some() {
         return;
     }
     let (settings, errors) = wind.field_settings().clamped();
@@ -115,19 +187,19 @@ pub(in crate::wind) fn start_field_build(wind: Res<Wind>, mut active: ResMut<Act
     active.build = Some(AsyncComputeTaskPool::get().spawn(async move { WindField::synthesise(&settings) }));
 }
 
-/// Takes over a field that has been built.
+/// Takes over a field that has been built, at once or when it is released.
 pub(in crate::wind) fn finish_field_build(wind: Res<Wind>, mut active: ResMut<ActiveWind>) {
+    if active.bypass_change_detection().take_incoming(wind.fade_s) {
+        active.set_changed();
+    }
     // Polling is no change.
     let Some(build) = &mut active.bypass_change_detection().build else { return };
     let Some(built) = block_on(poll_once(build)) else { return };
     active.build = None;
     match built {
         Ok(field) => {
-            let field = Arc::new(field);
-            match &mut active.fields {
-                Some(fields) => fields.succeed(field, wind.fade_s).into_iter().for_each(drop_in_background),
-                None => active.fields = Some(CrossFade::new(field)),
-            }
+            active.announce(Arc::new(field));
+            active.take_incoming(wind.fade_s);
         }
         Err(error) => warn!("wind: {error}; the last good wind stays in force"),
     }
@@ -135,8 +207,8 @@ pub(in crate::wind) fn finish_field_build(wind: Res<Wind>, mut active: ResMut<Ac
 
 /// Advances the fade from one field to the next.
 pub(in crate::wind) fn fade_fields(time: Res<Time>, mut active: ResMut<ActiveWind>) {
-    let Some(fields) = &mut active.bypass_change_detection().fields else { return };
-    match fields.advance(time.delta_secs()) {
+    let Some(winds) = &mut active.bypass_change_detection().winds else { return };
+    match winds.advance(time.delta_secs()) {
         FadeStep::Rest => return,
         FadeStep::Began | FadeStep::Running => {}
         FadeStep::Finished(replaced) => {
