@@ -6,7 +6,10 @@
 //! comes near to a tile long after it was planted are cells planted again, one by one, for the near trees: that is one cell in a hundred
 //! of those that are known.
 
-use crate::scatter::{Ground, Planted, Planter};
+use crate::{
+    ground::Ground,
+    scatter::{Planted, Planter},
+};
 use bevy::{math::IVec2, platform::hash::FixedState};
 use std::hash::{BuildHasher, Hasher};
 
@@ -99,8 +102,9 @@ fn fingerprint(plants: &[Planted], ends: &[u32]) -> u64 {
 mod tests {
     use super::*;
     use crate::{
+        ground::LevelGround,
         scatter::{
-            ForestPlan, LevelGround,
+            ForestPlan,
             plan::{Area, Stock},
         },
         tree::growth::age::Age,
