@@ -37,7 +37,11 @@ pub fn tokens(text: &str) -> Vec<Token> {
                 while let Some((next, c)) = chars.next_if(|&(_, c)| c.is_alphanumeric() || c == '_') {
                     end = next + c.len_utf8();
                 }
-                tokens.push(Token::Word(text[at..end].into()));
+                // A byte or C string, or a byte: the prefix belongs to it.
+                let is_prefix = matches!(&text[at..end], "b" | "c") && text[end..].starts_with(['"', '\'']);
+                if !is_prefix {
+                    tokens.push(Token::Word(text[at..end].into()));
+                }
             }
             _ if c.is_whitespace() => {}
             _ => tokens.push(Token::Sign(c)),
