@@ -12,6 +12,7 @@ mod cantilever;
 mod chart;
 mod figure9;
 mod figure9_chart;
+mod frame;
 mod grid;
 mod levels;
 #[path = "../../src/dynamics/oracle/oscillator.rs"]
@@ -21,6 +22,7 @@ mod parity;
 mod points;
 mod report;
 mod scale;
+mod skeleton;
 mod spectrum;
 #[path = "../../tests/support/mod.rs"]
 mod support;
@@ -42,6 +44,8 @@ enum Topic {
     Basis,
     /// The cantilever and the periodic steady state against closed forms and the Duhamel integral.
     Beams,
+    /// Whole trees against finite elements: how they bend, how fast they sway.
+    Skeleton,
     /// Vertices posed on the GPU against the same on the CPU.
     Parity,
     /// Random ground against its covariance models, and the round trip from ground to fitted model.
@@ -96,6 +100,7 @@ fn main() -> ExitCode {
         Topic::Spectrum => spectrum::run(),
         Topic::Basis => basis::run(),
         Topic::Beams => beams::run(),
+        Topic::Skeleton => skeleton::run(),
         Topic::Parity => parity::run(),
         Topic::Terrain => terrain::run(),
         Topic::Points => points::run(),
