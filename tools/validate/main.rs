@@ -26,6 +26,7 @@ mod skeleton;
 mod spectrum;
 #[path = "../../tests/support/mod.rs"]
 mod support;
+mod sway;
 mod terrain;
 mod trees;
 #[path = "../support/walk.rs"]
@@ -46,6 +47,8 @@ enum Topic {
     Beams,
     /// Whole trees against finite elements: how they bend, how fast they sway.
     Skeleton,
+    /// The sway of trunks against direct integration in a wind that every part of the crown feels. Takes some minutes.
+    Sway,
     /// Vertices posed on the GPU against the same on the CPU.
     Parity,
     /// Random ground against its covariance models, and the round trip from ground to fitted model.
@@ -101,6 +104,7 @@ fn main() -> ExitCode {
         Topic::Basis => basis::run(),
         Topic::Beams => beams::run(),
         Topic::Skeleton => skeleton::run(),
+        Topic::Sway => sway::run(),
         Topic::Parity => parity::run(),
         Topic::Terrain => terrain::run(),
         Topic::Points => points::run(),
