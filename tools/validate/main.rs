@@ -12,6 +12,7 @@ mod cantilever;
 mod chart;
 mod figure9;
 mod figure9_chart;
+mod frame;
 mod grid;
 mod leaves;
 mod levels;
@@ -22,9 +23,11 @@ mod parity;
 mod points;
 mod report;
 mod scale;
+mod skeleton;
 mod spectrum;
 #[path = "../../tests/support/mod.rs"]
 mod support;
+mod sway;
 mod terrain;
 mod trees;
 #[path = "../support/walk.rs"]
@@ -43,6 +46,10 @@ enum Topic {
     Basis,
     /// The cantilever and the periodic steady state against closed forms and the Duhamel integral.
     Beams,
+    /// Whole trees against finite elements: how they bend, how fast they sway.
+    Skeleton,
+    /// The sway of trunks against direct integration in a wind that every part of the crown feels. Takes some minutes.
+    Sway,
     /// Vertices posed on the GPU against the same on the CPU.
     Parity,
     /// How far a small change of wind or branch turns a leaf, and leaves on the GPU against the same on the CPU.
@@ -99,6 +106,8 @@ fn main() -> ExitCode {
         Topic::Spectrum => spectrum::run(),
         Topic::Basis => basis::run(),
         Topic::Beams => beams::run(),
+        Topic::Skeleton => skeleton::run(),
+        Topic::Sway => sway::run(),
         Topic::Parity => parity::run(),
         Topic::Leaves => leaves::run(),
         Topic::Terrain => terrain::run(),

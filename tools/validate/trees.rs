@@ -44,7 +44,7 @@ pub fn run() -> Report {
     report
 }
 
-fn shipped(name: &str) -> Result<Species, String> {
+pub fn shipped(name: &str) -> Result<Species, String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("assets/species/{name}.species.ron"));
     let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
     Species::from_ron(&text).map_err(|error| format!("{}: {error}", path.display()))
