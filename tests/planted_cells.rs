@@ -1,11 +1,12 @@
 //! What a forest plants: each cell once, for the store of stems and for the near trees, and again only where a plan has changed.
 
-use bevy::prelude::*;
+use bevy::{math::DVec2, prelude::*};
 use bevy_windwood::{
+    Ground,
     forest::ForestCells,
     prelude::*,
     scatter::{
-        ForestPlan, Ground, Planter,
+        ForestPlan, Planter,
         plan::{Area, Shape},
     },
 };
@@ -47,13 +48,13 @@ impl CountingGround {
 }
 
 impl Ground for CountingGround {
-    fn height_m(&self, _: f32, _: f32) -> f32 {
+    fn height_m(&self, _: DVec2) -> f64 {
         self.0.fetch_add(1, Ordering::Relaxed);
         0.0
     }
 
-    fn slope(&self, _: f32, _: f32) -> f32 {
-        0.0
+    fn gradient(&self, _: DVec2) -> DVec2 {
+        DVec2::ZERO
     }
 }
 

@@ -24,8 +24,6 @@ use bevy::{
 };
 use std::sync::Arc;
 
-pub(super) type SharedGround = Arc<dyn Ground>;
-
 /// A tile's plants, and its cells packed for the store.
 type Planting = Task<(Arc<PlantedTile>, Vec<(IVec2, Cell)>)>;
 

@@ -31,8 +31,8 @@ pub fn tips(crowns: &[Crown], response: &WindResponse) -> Vec<Vec<Vec<Complex<f6
     for (index, column) in COLUMNS.into_iter().enumerate() {
         let stem = Vec3::new(0.0, 0.0, column as f32 * resolution.column_spacing_m);
         for sample in 0..resolution.time_samples {
-            let (column, tau_s) = response.place(stem, f64::from(sample) * f64::from(resolution.time_step_s));
-            response.table.responses(column, tau_s, &mut responses);
+            let place = response.place(stem, f64::from(sample) * f64::from(resolution.time_step_s));
+            response.table.responses(&place, &mut responses);
             for ((crown, poser), tips) in crowns.iter().zip(&posers).zip(&mut tips) {
                 poser.pose(&responses, &mut poses);
                 tips[index].push(free_tip(crown, &poses));
