@@ -133,9 +133,9 @@ pub(super) fn finish_tables(mut wind: ResMut<ActiveWind>, mut sway: ResMut<Activ
         sway.building = None;
     }
     if let Some(tables) = sway.incoming.take_if(|_| sway.is_released) {
-        sway.ready.push(tables);
         // What it answers does not change by this.
-        wind.bypass_change_detection().release_incoming();
+        wind.bypass_change_detection().release_incoming(tables.number);
+        sway.ready.push(tables);
     }
 }
 

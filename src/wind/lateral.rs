@@ -9,7 +9,7 @@
 //! 2. *Coherence.* Each cell between two columns has a lag, which grows and falls across it: `lag_j sin(2 pi s)`. It is
 //!    nothing on the columns, and so the field stays as it was synthesised there. Fast gusts lose their coherence by it, slow
 //!    ones do not. Over many cells the lags are spread so that pairs of places have the coherence `exp(-C f d / U)`
-//!    (Setas et al., equations 11 and 12) to some 0.07. The spread is fitted to that.
+//!    (Setas et al., equations 11 and 12) to some 0.07, for u. The spread is fitted to that.
 //! 3. *Repeat.* After the last column comes the first one again, but later: fronts are slanted. Without the slant the same gust
 //!    would blow at the same moment at every width of the field.
 //!

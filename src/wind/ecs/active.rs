@@ -128,14 +128,16 @@ impl ActiveWind {
         self.incoming.as_ref()
     }
 
-    /// Lets the wind that waits begin.
-    pub(crate) fn release_incoming(&mut self) {
-        self.is_released = true;
+    /// Lets the wind of that number begin, if it waits.
+    pub(crate) fn release_incoming(&mut self, number: u64) {
+        self.is_released |= self.incoming.as_ref().is_some_and(|wind| wind.number == number);
     }
 
-    /// Lets the newest field come in once more, as another wind, where none waits: what belongs to it is to be prepared anew.
+    /// Lets the newest field come in once more, as another wind, where none is built and none waits: what belongs to it is to be
+    /// prepared anew.
     pub(crate) fn repeat_newest(&mut self) {
         if self.incoming.is_none()
+            && self.build.is_none()
             && let Some(field) = self.newest().cloned()
         {
             self.announce(field);
@@ -170,15 +172,15 @@ impl ActiveWind {
     }
 }
 
-/// Starts a build when the wind has changed and no build runs. Changes during a build are taken up after it.
+/// Starts a build when the wind has changed, no build runs and no wind waits. Changes meanwhile are taken up after it.
 pub(in crate::wind) fn start_field_build(wind: Res<Wind>, mut active: ResMut<ActiveWind>) {
+    if wind.is_changed() {
+        wind.field_settings().clamped().1.iter().for_each(|error| warn!("wind: {error}"));
+    }
     if active.build.is_some() || active.incoming.is_some() {
         return;
     }
-    let (settings, errors) = wind.field_settings().clamped();
-    if wind.is_changed() {
-        errors.iter().for_each(|error| warn!("wind: {error}"));
-    }
+    let settings = wind.field_settings().clamped().0;
     let is_refused = !wind.is_finite() && active.requested.is_some();
     if is_refused || active.requested.as_ref() == Some(&settings) {
         return;

@@ -38,14 +38,16 @@ impl Seam {
             // Multiples of 1/16, so that adding a period does not round.
             let [a, b, c] = [7, 11, 13].map(|stride| f64::from(place * stride % 2048) / 16.0);
             let position = Vec3::new(a as f32, 2.0 + (c / 4.0) as f32, b as f32);
-            let here = field.sample(position, c);
-            let later = field.sample(position, c + period_s);
-            let aside = field.sample(position - width_m * Vec3::Z, c - 3.0 * period_s);
-            jump = f64::max(jump, f64::from((later - here).length().max((aside - here).length())) / speed_m_s);
+            let later = field.sample(position, c + period_s) - field.sample(position, c);
+            // The lags between the columns are other ones in each period: that it repeats holds on the columns.
+            let on_column = Vec3::new(position.x, position.y, (place % 512) as f32 * width_m / 16.0);
+            let delay_s = field.repeat_delay_s();
+            let aside = field.sample(on_column - width_m * Vec3::Z, c - delay_s - 3.0 * period_s);
+            let aside = aside - field.sample(on_column, c);
+            jump = f64::max(jump, f64::from(later.length().max(aside.length())) / speed_m_s);
 
             let on_time_seam = Vec3::new(0.0, position.y, position.z);
-            let on_side_seam = Vec3::new(position.x, position.y, width_m);
-            let on_column = Vec3::new(position.x, position.y, (place % 16) as f32 * width_m / 16.0);
+            let on_side_seam = Vec3::new(position.x, position.y, (place % 512) as f32 * width_m);
             at_seam += time_step(field, on_time_seam, period_s) + side_step(field, on_side_seam, c);
             elsewhere += time_step(field, on_time_seam, c) + side_step(field, on_column, c);
         }
@@ -64,22 +66,4 @@ fn time_step(field: &WindField, position: Vec3, time_s: f64) -> f64 {
 fn side_step(field: &WindField, position: Vec3, time_s: f64) -> f64 {
     let quarter = 0.25 * field.settings().resolution.column_spacing_m * Vec3::Z;
     f64::from((field.sample(position + quarter, time_s) - field.sample(position - quarter, time_s)).length_squared())
-}
-
-/// Standard deviation of the turbulence midway between columns and levels over that on them.
-pub fn deviation_midway(field: &WindField) -> f64 {
-    let resolution = field.settings().resolution;
-    let power = |offset: f32| {
-        let mut sum = 0.0;
-        for place in 0..16 {
-            let across = (place as f32 + offset) * resolution.column_spacing_m;
-            let height = (4.0 + offset) * resolution.level_spacing_m;
-            for sample in 0..resolution.time_samples {
-                let time_s = f64::from(sample) * f64::from(resolution.time_step_s);
-                sum += f64::from(field.turbulence_at(Vec3::new(0.0, height, across), time_s).length_squared());
-            }
-        }
-        sum
-    };
-    (power(0.5) / power(0.0)).sqrt()
 }
