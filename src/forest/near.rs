@@ -1,8 +1,9 @@
 //! Trees near the viewers: cells whose plants are entities.
 
+#[cfg(feature = "render")]
+use super::extent::Extent;
 use super::{
     components::{ForestCell, ForestSettings},
-    extent::Extent,
     near_cell::{NearCell, NearTree, tree},
     planted_tile::PlantedTile,
     reach::reaching,

@@ -57,6 +57,7 @@ impl PlantedTile {
     }
 
     /// All of its plants.
+    #[cfg(any(feature = "render", test))]
     pub fn plants(&self) -> &[Planted] {
         &self.plants
     }

@@ -15,8 +15,8 @@ pub(super) const HYSTERESIS: f32 = 1.15;
 const MOST_CELLS: f32 = 500.0;
 
 /// Cells whose tiles are ordered in a frame, are being planted, and are dropped in a frame, at most; but one tile always.
-const CELLS_PER_STEP: u32 = 256;
-const MOST_CELLS_ORDERED: u32 = 512;
+const CELLS_PER_STEP: u32 = 128;
+const MOST_CELLS_ORDERED: u32 = 256;
 const CELLS_DROPPED_PER_STEP: u32 = 128;
 
 /// Follows viewers over so many metres, with squares of that side.
