@@ -4,13 +4,13 @@
 #[expect(dead_code, reason = "a part of it is for the unit tests")]
 mod oscillator;
 
-use bevy::math::{Mat3, Vec2, Vec3, Vec4};
+use bevy::math::{Mat3, Vec2, Vec3};
 use bevy_windwood::{
     dynamics::{
-        BeamDynamics, BeamPose, ExactStep, FrequencyClasses, LoadBasis, LoadBasisKind, NO_PARENT, OscillatorState,
-        ResponseTable, TablePlace, TreePoser,
+        BeamDynamics, BeamPose, BeamSway, BeamWind, ExactStep, FrequencyClasses, LoadBasis, LoadBasisKind, MeanWind,
+        NO_PARENT, OscillatorGrid, OscillatorState, ResponseTable, TablePlace, TreeInWind, TreePoser,
     },
-    wind::cross_flow_pressure,
+    wind::{LogProfile, cross_flow_pressure},
 };
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use oscillator::Oscillator;
@@ -29,27 +29,29 @@ criterion_main!(benches);
 fn pose(criterion: &mut Criterion) {
     let columns = wind();
     let basis = basis(&columns);
-    let classes = FrequencyClasses::default();
-    let table = ResponseTable::new(&columns, TIME_STEP_S, &basis, classes, 0.1);
+    let wind = beam_wind();
+    let table = ResponseTable::new(&columns, TIME_STEP_S, &basis, wind.grid);
+    let tree_in_wind =
+        TreeInWind { map: basis.map(), wind: &wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 };
     let beams = tree();
     let mut group = criterion.benchmark_group("pose");
 
     group.throughput(Throughput::Elements(BRANCHES as u64));
     group.bench_function("tree_500", |bencher| {
-        let poser = TreePoser::new(&beams, basis.map(), &classes, Mat3::IDENTITY, 1.0);
+        let poser = TreePoser::new(&beams, &tree_in_wind);
         let mut poses = vec![BeamPose::REST; BRANCHES];
-        let mut responses = vec![Vec4::ZERO; classes.count];
+        let mut responses = Vec::new();
         let mut tau_s = 0.0;
         bencher.iter(|| {
             tau_s += 1.0 / 60.0;
-            table.responses(&TablePlace::on_column(3, tau_s), &mut responses);
+            table.responses(&place(tau_s), poser.rows(), &mut responses);
             poser.pose(&responses, &mut poses);
             black_box(&mut poses);
         });
     });
     group.bench_function("prepare_500", |bencher| {
         let mut poser = TreePoser::default();
-        bencher.iter(|| poser.prepare(black_box(&beams), basis.map(), &classes, Mat3::IDENTITY, 1.0));
+        bencher.iter(|| poser.prepare(black_box(&beams), &tree_in_wind));
     });
     group.bench_function("own_oscillators_500", |bencher| {
         let mut branches: Vec<OwnOscillators> = beams.iter().map(OwnOscillators::new).collect();
@@ -85,14 +87,25 @@ fn tables(criterion: &mut Criterion) {
     let columns = wind();
     let velocities = columns.concat();
     let basis = basis(&columns);
-    let classes = FrequencyClasses::default();
+    let grid = beam_wind().grid;
     criterion.bench_function("load_basis/default", |bencher| {
         bencher.iter(|| LoadBasis::new(LoadBasisKind::Principal, black_box(&velocities), cross_flow_pressure));
     });
     criterion.bench_function("response_table/default", |bencher| {
-        let build = |()| ResponseTable::new(black_box(&columns), TIME_STEP_S, &basis, classes, 0.1);
+        let build = |()| ResponseTable::new(black_box(&columns), TIME_STEP_S, &basis, grid);
         bencher.iter_batched(|| (), build, BatchSize::PerIteration);
     });
+}
+
+/// Between two columns.
+fn place(tau_s: f64) -> TablePlace {
+    TablePlace { columns: [2, 3, 4, 5], weights: [-0.1, 0.8, 0.4, -0.1], tau_s }
+}
+
+/// The mean wind of [`wind`], and the oscillators of its table.
+fn beam_wind() -> BeamWind {
+    let mean = MeanWind::new(&LogProfile::from_reference(8.0, 0.1, 0.0), 10.0);
+    BeamWind { mean, grid: OscillatorGrid::new(FrequencyClasses::default(), 0.05, 8.0, 10.0) }
 }
 
 /// A branch without the shared table: its own modes 1 to 3 in both transverse directions, under the quadratic drag of the
@@ -166,23 +179,28 @@ fn tree() -> Vec<BeamDynamics> {
         direction: Vec3::Y,
         attach: 0.0,
         parent: NO_PARENT,
-        gain: 0.001,
-        class: 6.0,
+        in_leaf: sway(0.001, 6.0),
+        bare: sway(0.001, 6.0),
     }];
     while beams.len() < BRANCHES {
         let parent = random.random_range(0..beams.len().div_ceil(4));
         let attach = random.random_range(0.3..1.0f32);
         let azimuth = random.random_range(0.0..std::f32::consts::TAU);
         let on = &beams[parent];
+        let class = random.random_range(8.0..23.0);
         beams.push(BeamDynamics {
             base: on.base + on.length_m * attach * on.direction,
             length_m: 0.6 * on.length_m,
             direction: Vec3::new(azimuth.cos(), 0.8, azimuth.sin()).normalize(),
             attach,
             parent: parent as u32,
-            gain: 0.003,
-            class: random.random_range(8.0..23.0),
+            in_leaf: sway(0.003, class),
+            bare: sway(0.003, class),
         });
     }
     beams
+}
+
+fn sway(gain: f32, class: f32) -> BeamSway {
+    BeamSway { gain, class, averaging_speed_m_s: 1.0, drag_damping_s_m: 0.01, load_height_m: 8.0, drag_exponent: -0.35 }
 }

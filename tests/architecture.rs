@@ -28,7 +28,7 @@ use modules::{Crate, File};
 /// A room and the rooms it may import. A room that is not here may not exist.
 const MAY_KNOW: [(&str, &[&str]); 13] = [
     ("wind", &[]),
-    ("dynamics", &[]),
+    ("dynamics", &["wind"]),
     ("texture", &[]),
     ("terrain", &["texture", "render"]),
     ("scatter", &[]),

@@ -20,15 +20,29 @@ fn mode_shape_is_equal_in_rust_and_wesl() {
     assert_eq!(constant("TIP_ANGLE_LIMIT"), [TIP_ANGLE_LIMIT]);
 }
 
+/// The number of a constant, in Rust or WESL.
+fn value(text: &str, name: &str) -> f32 {
+    let line = text.lines().find(|line| line.contains(&format!("const {name}:"))).expect("it is there");
+    let value = line.split('=').nth(1).expect("it has a value").trim().trim_end_matches(';').trim_end_matches('u');
+    value.parse().expect("a number")
+}
+
 #[test]
 fn leaf_phenology_constants_are_equal_in_rust_and_wesl() {
     let code = include_str!("../src/tree/phenology.rs");
     let shader = include_str!("../src/render/shaders/season.wesl");
-    let value = |text: &str, name: &str| -> f32 {
-        let line = text.lines().find(|line| line.starts_with(&format!("const {name}: f32"))).expect("it is there");
-        line.split('=').nth(1).expect("it has a value").trim().trim_end_matches(';').parse().expect("a number")
-    };
     for name in ["DROP", "YOUTH", "DRIFT", "FARTHEST_M"] {
         assert_eq!(value(code, name), value(shader, name));
+    }
+}
+
+#[test]
+fn constants_of_the_sway_are_equal_in_rust_and_wesl() {
+    let shader = include_str!("../src/render/shaders/beam_sway.wesl");
+    for (code, names) in [
+        (include_str!("../src/dynamics/beam.rs"), ["DRAG_SPEED_M_S", "FOLDING_SPEED_M_S"]),
+        (include_str!("../src/dynamics/oscillator_grid.rs"), ["SIZES", "DAMPINGS"]),
+    ] {
+        names.into_iter().for_each(|name| assert_eq!(value(code, name), value(shader, name), "{name}"));
     }
 }

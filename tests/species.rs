@@ -27,7 +27,10 @@ fn check(name: &str, species: &Species, age_years: f32, seed: u64) -> TreeModel 
     assert!(finite(&model.wood.positions) && finite(&model.wood.normals), "{name} at {age_years}: wood");
     assert!(finite(&model.leaves.positions) && finite(&model.leaves.normals), "{name} at {age_years}: leaves");
     assert!(model.beams.len() <= BEAMS_LIMIT && model.skeleton.clusters.len() <= CLUSTERS_LIMIT, "{name}");
-    assert!(model.beams.iter().all(|beam| beam.gain.is_finite() && beam.class.is_finite()), "{name}: dynamics");
+    assert!(
+        model.beams.iter().all(|beam| beam.in_leaf.gain.is_finite() && beam.bare.class.is_finite()),
+        "{name}: dynamics"
+    );
     model
 }
 

@@ -5,34 +5,44 @@
 //!
 //! 1. `load_basis`: four signals stand for the wind's load on a beam of *any* direction, in place of the three orthogonal
 //!    beams of (25). `direction_map` holds the coefficients of each direction.
-//! 2. `frequency_classes`: natural frequencies, rounded to some twenty classes.
-//! 3. `response`: the responses of oscillators (21) of each class to these signals, as one table.
-//! 4. `pose`: a tree's bent beams, each attached to its parent, from that table.
-//! 5. `leaf`: leaves that turn into the wind and flutter (26).
-//! 6. `exact_step`: one oscillator, step by step, for motion that is not periodic. Later versions use it for trees that a
+//! 2. `oscillator_grid`: a few hundred oscillators that stand for those of all beams: `frequency_classes`, rounded to some
+//!    twenty, sizes of what a beam carries, which average gusts (`admittance`), and damping ratios.
+//! 3. `response`: the responses of these oscillators (21) to the signals, as one table.
+//! 4. `beam`: how a beam answers a wind: by how much at its height (`mean_wind`), and as which oscillators.
+//! 5. `pose`: a tree's bent beams, each attached to its parent, from the table.
+//! 6. `leaf`: leaves that turn into the wind and flutter (26).
+//! 7. `exact_step`: one oscillator, step by step, for motion that is not periodic. Later versions use it for trees that a
 //!    game pushes.
 //!
-//! Steps 1 to 3 happen once for a wind, steps 4 and 5 in every frame. Since (21) is linear, a branch costs a few
+//! Steps 1 to 3 happen once for a wind, step 4 once for a tree in a wind, steps 5 and 6 in every frame. Since (21) is linear, a branch costs a few
 //! multiplications, whatever its frequency and its place in the tree. The closed forms that all this is checked against
 //! (18 to 24) are in `oracle`, for tests alone.
 //!
 //! Lengths are in metres, times in seconds. *Wind coordinates* are (along, up, across): along the mean wind, the world's
 //! up, and along x up.
 
+pub(crate) mod admittance;
+pub(crate) mod beam;
 pub(crate) mod direction_map;
 mod exact_step;
 pub(crate) mod frequency_classes;
 pub(crate) mod leaf;
 pub(crate) mod load_basis;
+pub(crate) mod mean_wind;
 #[cfg(test)]
 mod oracle;
+pub(crate) mod oscillator_grid;
 pub(crate) mod pose;
 pub(crate) mod response;
 
+pub use admittance::{admittance, equivalent_size_m};
+pub use beam::{BeamAnswer, BeamDynamics, BeamSway, BeamWind, DRAG_SPEED_M_S, NO_PARENT};
 pub use direction_map::{DirectionMap, LoadCoefficients};
 pub use exact_step::{ExactStep, OscillatorState};
 pub use frequency_classes::FrequencyClasses;
 pub use leaf::{LeafResponse, RestingLeaf};
 pub use load_basis::{LoadBasis, LoadBasisKind};
-pub use pose::{BeamDynamics, BeamPose, MODE_SHAPE, NO_PARENT, SLOPE_TIP, TIP_ANGLE_LIMIT, TreePoser};
+pub use mean_wind::MeanWind;
+pub use oscillator_grid::{OscillatorGrid, RowWeights};
+pub use pose::{BeamPose, MODE_SHAPE, SLOPE_TIP, TIP_ANGLE_LIMIT, TreeInWind, TreePoser};
 pub use response::{ResponseTable, TablePlace};

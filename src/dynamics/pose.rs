@@ -24,12 +24,10 @@
 //!
 //! Posing needs no trigonometry: quaternions come from polynomials in the half angle.
 
+use super::beam::{BeamDynamics, BeamWind, NO_PARENT};
 use super::direction_map::DirectionMap;
-use super::frequency_classes::FrequencyClasses;
+use super::oscillator_grid::RowWeights;
 use bevy::math::{Mat3, Quat, Vec3, Vec3A, Vec4};
-
-/// The parent index of a beam that stands on the ground.
-pub const NO_PARENT: u32 = u32::MAX;
 
 /// `phi_1'(1)`, the slope at the tip of the first mode with a tip of 1: the tip's angle for a deflection of one length.
 pub const SLOPE_TIP: f32 = 1.376_505_4;
@@ -51,25 +49,6 @@ pub const MODE_SHAPE: [[f32; 4]; 7] = [
 
 /// Free angles beyond this, in radians and by component, are cut off before they overflow.
 const FREE_ANGLE_BOUND: f32 = 1e6;
-
-/// What a beam's motion depends on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BeamDynamics {
-    /// Root at rest, in metres, in the tree's coordinates.
-    pub base: Vec3,
-    /// Length in metres.
-    pub length_m: f32,
-    /// Unit direction at rest, from root to tip.
-    pub direction: Vec3,
-    /// Place on the parent's axis where this beam is attached, 0 (root) to 1 (tip).
-    pub attach: f32,
-    /// Index of the parent, which must be lower than the beam's own, or [`NO_PARENT`].
-    pub parent: u32,
-    /// Tip deflection by length and load, in s^2/m^2.
-    pub gain: f32,
-    /// Natural frequency as a [coordinate](FrequencyClasses::coordinate) of the classes, not rounded.
-    pub class: f32,
-}
 
 /// How a beam is bent, and what its ancestors do to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -184,6 +163,9 @@ fn saturate(free: Vec3A) -> Vec3A {
 #[derive(Clone, Debug, Default)]
 pub struct TreePoser {
     beams: Vec<PreparedBeam>,
+    /// The rows of the table that the beams read, in order, and the place of each row of the table among these.
+    rows: Vec<u32>,
+    places: Vec<u32>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -193,55 +175,76 @@ struct PreparedBeam {
     moving: [Vec3A; 4],
     /// Where on the parent this beam is attached.
     attach: AxisPoint,
-    class: u32,
+    /// Of the rows in `TreePoser::rows`.
+    read: RowWeights,
     parent: u32,
+}
+
+/// What the poses of a tree in one wind depend on beside its beams.
+#[derive(Clone, Copy)]
+pub struct TreeInWind<'a> {
+    /// The load coefficients of all directions.
+    pub map: &'a DirectionMap,
+    /// The mean wind, and the oscillators of the table.
+    pub wind: &'a BeamWind,
+    /// Turns the tree's coordinates into the wind's: a rotation, or one with a mirror image before it.
+    pub to_wind: Mat3,
+    /// Size of the instance.
+    pub scale: f32,
+    /// How much of its leaves the tree has, 0 to 1.
+    pub leaf_share: f32,
 }
 
 impl TreePoser {
     /// See [`prepare`](Self::prepare).
-    pub fn new(
-        beams: &[BeamDynamics],
-        map: &DirectionMap,
-        classes: &FrequencyClasses,
-        to_wind: Mat3,
-        scale: f32,
-    ) -> Self {
+    pub fn new(beams: &[BeamDynamics], tree: &TreeInWind) -> Self {
         let mut poser = Self::default();
-        poser.prepare(beams, map, classes, to_wind, scale);
+        poser.prepare(beams, tree);
         poser
     }
 
-    /// Prepares the beams of a tree, in place of the former ones. To be repeated when the wind's basis or the tree's
-    /// orientation changes.
-    ///
-    /// `to_wind` turns the tree's coordinates into the wind's: a rotation, or one with a mirror image before it. `scale` is the size of the instance: it makes a
-    /// tree sway more slowly, and leaves the angles as they are (stiffness grows with its fourth power, as do the load's
-    /// moments). A beam with a parent that does not precede it stands on the ground.
-    pub fn prepare(
-        &mut self,
-        beams: &[BeamDynamics],
-        map: &DirectionMap,
-        classes: &FrequencyClasses,
-        to_wind: Mat3,
-        scale: f32,
-    ) {
-        let shift = classes.shift(scale);
+    /// Prepares the beams of a tree, in place of the former ones. To be repeated when the wind's basis, the tree's
+    /// orientation or the season changes. A beam with a parent that does not precede it stands on the ground.
+    pub fn prepare(&mut self, beams: &[BeamDynamics], tree: &TreeInWind) {
         self.beams.clear();
         self.beams.extend(beams.iter().enumerate().map(|(index, beam)| {
             let parent = beams[..index].get(beam.parent as usize);
-            let coefficients = map.coefficients(to_wind * beam.direction);
-            let free_angle = |load: Vec3| {
-                let angle = SLOPE_TIP * beam.gain * (to_wind.transpose() * load);
+            let coefficients = tree.map.coefficients(tree.to_wind * beam.direction);
+            let answer = beam.sway(tree.leaf_share).answer(tree.wind, tree.scale);
+            let free_angle = |load: Vec3, gain: f32| {
+                let angle = SLOPE_TIP * gain * (tree.to_wind.transpose() * load);
                 Vec3A::from(if angle.is_finite() { angle } else { Vec3::ZERO })
             };
             PreparedBeam {
-                mean: free_angle(coefficients.mean),
-                moving: coefficients.moving.map(free_angle),
+                mean: free_angle(coefficients.mean, answer.mean_gain),
+                moving: coefficients.moving.map(|moving| free_angle(moving, answer.gust_gain)),
                 attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
-                class: classes.nearest(beam.class + shift) as u32,
+                read: answer.read,
                 parent: if parent.is_some() { beam.parent } else { NO_PARENT },
             }
         }));
+        self.find_rows(tree.wind.grid.rows());
+    }
+
+    /// Notes which of the table's rows are read, and has the beams point at these.
+    fn find_rows(&mut self, table_rows: usize) {
+        const UNUSED: u32 = u32::MAX;
+        self.places.clear();
+        self.places.resize(table_rows, UNUSED);
+        self.beams.iter().flat_map(|beam| beam.read.rows).for_each(|row| self.places[row as usize] = 0);
+        self.rows.clear();
+        for (row, place) in (0..).zip(&mut self.places).filter(|(_, place)| **place != UNUSED) {
+            *place = self.rows.len() as u32;
+            self.rows.push(row);
+        }
+        for row in self.beams.iter_mut().flat_map(|beam| &mut beam.read.rows) {
+            *row = self.places[*row as usize];
+        }
+    }
+
+    /// The rows of the table whose responses [`pose`](Self::pose) asks for.
+    pub fn rows(&self) -> &[u32] {
+        &self.rows
     }
 
     /// Beams with a constant bend, by a free tip angle in rad across each beam, in any wind.
@@ -252,11 +255,11 @@ impl TreePoser {
                 mean: Vec3A::from(free_angle(beam)),
                 moving: [Vec3A::ZERO; 4],
                 attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
-                class: u32::MAX,
+                read: RowWeights::default(),
                 parent: if parent.is_some() { beam.parent } else { NO_PARENT },
             }
         });
-        Self { beams: prepared.collect() }
+        Self { beams: prepared.collect(), ..Self::default() }
     }
 
     /// Number of beams.
@@ -284,8 +287,8 @@ impl TreePoser {
         }
     }
 
-    /// Poses all beams, for the responses of all classes at the tree's place and time
-    /// ([`ResponseTable::responses`](super::response::ResponseTable::responses)). A class without a response is at rest in the mean
+    /// Poses all beams, for the responses of its [`rows`](Self::rows) at the tree's place and time
+    /// ([`ResponseTable::responses`](super::response::ResponseTable::responses)). A row without a response is at rest in the mean
     /// wind. Beams beyond the length of `out` are left out.
     pub fn pose(&self, responses: &[Vec4], out: &mut [BeamPose]) {
         for (index, beam) in self.beams.iter().enumerate().take(out.len()) {
@@ -296,7 +299,9 @@ impl TreePoser {
 
 #[inline]
 fn response_of(beam: &PreparedBeam, responses: &[Vec4]) -> Vec4 {
-    responses.get(beam.class as usize).copied().unwrap_or(Vec4::ZERO)
+    let RowWeights { rows, weights } = &beam.read;
+    let of_row = |index: usize| responses.get(rows[index] as usize).copied().unwrap_or(Vec4::ZERO) * weights[index];
+    (of_row(0) + of_row(1)) + (of_row(2) + of_row(3))
 }
 
 impl PreparedBeam {

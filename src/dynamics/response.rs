@@ -1,17 +1,18 @@
-//! The responses of oscillators of every frequency class to the basis signals: one table for all branches of all trees.
+//! The responses of unit oscillators to the basis signals: one table for all branches of all trees.
 //!
-//! For each class of natural frequency `w_n`, each lateral column of the wind and each sample of its period the table
-//! holds the response to the four basis signals `y_k`, times `w_n^2`: a very stiff class returns the signal itself.
-//! The wind is periodic, so the steady response is exact in the frequency domain, one multiplication a bin (eq. 21):
+//! For each oscillator of the [grid](super::oscillator_grid), each lateral column of the wind and each sample of its period
+//! the table holds the response to the four basis signals `y_k`, times `w_n^2`: a very stiff one returns the signal itself.
+//! The wind is periodic, so the steady response is exact in the frequency domain, one multiplication a bin (eq. 21, with
+//! the aerodynamic admittance):
 //!
 //! ```text
-//! Y^(w) = w_n^2 / (w_n^2 - w^2 + 2 i xi w_n w)  y^(w)
+//! Y^(w) = |J(w)| w_n^2 / (w_n^2 - w^2 + 2 i xi w_n w)  y^(w)
 //! ```
 //!
 //! This transfer function maps real signals to real responses. So two signals go through one complex transform, as its
-//! real and imaginary parts.
+//! real and imaginary parts. Slow oscillators leave nothing of fast gusts: their rows have fewer samples.
 //!
-//! What this leaves out, as relative rms of the moving part at a damping ratio of 0.1 (`validate basis`):
+//! What this leaves out, as relative rms of the moving part (`validate basis`):
 //!
 //! - The time step bounds the frequencies: a cubic through the samples wants four of them a period, so a step of 1/16 s
 //!   serves oscillations up to 4 Hz. The spline loses 0.2% at 1 Hz, 1% at 2.2 Hz and 3% at 3.3 Hz, the highest class.
@@ -21,84 +22,92 @@
 //!   shifts the phase of its sway: 22% from the motion of the exact frequency in the median, though equal in its
 //!   statistics.
 
-use super::{frequency_classes::FrequencyClasses, load_basis::LoadBasis};
+use super::{
+    load_basis::LoadBasis,
+    oscillator_grid::{DAMPINGS, OscillatorGrid, SIZES},
+};
 use crate::interpolation::catmull_rom;
 use bevy::math::{Vec3, Vec4};
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// The least damping ratio of the table: an undamped oscillator has no steady state.
-const LEAST_DAMPING_RATIO: f32 = 1e-3;
-
-/// The responses of unit oscillators: frequency classes x lateral columns of the wind x samples of its period.
+/// The responses of unit oscillators: rows of the grid x lateral columns of the wind x samples of its period.
 #[derive(Clone, Debug)]
 pub struct ResponseTable {
-    /// The classes of natural frequency.
-    pub classes: FrequencyClasses,
+    /// The oscillators.
+    pub grid: OscillatorGrid,
     /// Number of lateral columns of the wind.
     pub(crate) columns: usize,
-    /// Number of samples in a period.
+    /// Number of samples of the wind in a period.
     pub(crate) samples: usize,
-    /// Time between two samples, in seconds.
+    /// Time between two samples of the wind, in seconds.
     pub(crate) time_step_s: f32,
-    /// Responses to the four basis signals, at index `(class * columns + column) * samples + time`.
+    /// Where each row is in the values.
+    pub(crate) rows: Vec<TableRow>,
+    /// Responses to the four basis signals, at index `row.first + column * row.samples + time`.
     pub(crate) values: Vec<Vec4>,
     /// Velocities of the wind at the reference height, at index `column * samples + time`: m/s in wind coordinates, and
     /// their magnitude as w.
     pub(crate) velocities: Vec<Vec4>,
 }
 
+/// Where the responses of one oscillator are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TableRow {
+    /// Index of its first value.
+    pub first: usize,
+    /// Samples in a period.
+    pub samples: usize,
+}
+
 impl ResponseTable {
     /// The steady response to a periodic wind. `columns` are its velocities in m/s in wind coordinates, one series of a
     /// whole period, `time_step_s` apart, for each lateral place; all count as long as the shortest, and an empty wind is
-    /// a calm. Velocities that are not finite count as calm. The damping ratio is that of all oscillators; it is
-    /// at least 0.001.
-    pub fn new(
-        columns: &[Vec<Vec3>],
-        time_step_s: f32,
-        basis: &LoadBasis,
-        classes: FrequencyClasses,
-        damping_ratio: f32,
-    ) -> Self {
+    /// a calm. Velocities that are not finite count as calm.
+    pub fn new(columns: &[Vec<Vec3>], time_step_s: f32, basis: &LoadBasis, grid: OscillatorGrid) -> Self {
         let calm = [vec![Vec3::ZERO]];
         let samples = columns.iter().map(Vec::len).min().unwrap_or(0);
         let columns = if samples == 0 { &calm[..] } else { columns };
         let samples = samples.max(1);
+        let time_step_s = if time_step_s > 0.0 && time_step_s.is_finite() { time_step_s } else { 1.0 };
         let velocities: Vec<Vec4> = columns.iter().flat_map(|c| c[..samples].iter().map(|&v| with_speed(v))).collect();
         let signals: Vec<Vec4> = velocities.iter().map(|velocity| basis.signals(velocity.truncate())).collect();
-        let class_count = classes.quasi_static() + 1;
         let mut table = Self {
-            classes,
+            grid,
             columns: columns.len(),
             samples,
-            time_step_s: if time_step_s > 0.0 && time_step_s.is_finite() { time_step_s } else { 1.0 },
-            values: vec![Vec4::ZERO; class_count * signals.len()],
+            time_step_s,
+            rows: Vec::with_capacity(grid.rows()),
+            values: Vec::new(),
             velocities,
         };
-        table.fill(&signals, damping_ratio);
+        table.fill(&signals);
         table
     }
 
-    fn fill(&mut self, signals: &[Vec4], damping_ratio: f32) {
-        let quasi_static = self.classes.quasi_static();
-        self.values[quasi_static * signals.len()..].copy_from_slice(signals);
+    fn fill(&mut self, signals: &[Vec4]) {
+        let grid = self.grid;
         let mut filter = PeriodicFilter::new(self.samples);
         let spectra: Vec<SignalSpectra> = signals.chunks_exact(self.samples).map(|s| filter.spectra(s)).collect();
-        let rows = self.values[..quasi_static * signals.len()].chunks_exact_mut(signals.len());
-        for (class, row) in rows.enumerate() {
-            let frequency_hz = self.classes.frequency_hz(class);
-            let transfer = transfer_function(self.samples, self.time_step_s, frequency_hz, damping_ratio);
-            for (column, spectra) in row.chunks_exact_mut(self.samples).zip(&spectra) {
-                filter.respond(spectra, &transfer, column);
+        let bin_hz = 1.0 / self.period_s();
+        for class in 0..=grid.classes.quasi_static() {
+            let samples = grid.samples(class, self.period_s(), self.samples);
+            filter.resample(samples);
+            let dampings = if class < grid.classes.quasi_static() { DAMPINGS } else { 1 };
+            let oscillators: Vec<Vec<Complex<f64>>> =
+                (0..dampings).map(|d| grid.transfer(class, d, bin_hz).take(samples / 2 + 1).collect()).collect();
+            for size in 0..SIZES {
+                let felt: Vec<f64> = grid.admittances(class, size, bin_hz).take(samples / 2 + 1).collect();
+                for oscillator in &oscillators {
+                    let transfer = oscillator.iter().zip(&felt).map(|(response, felt)| response * felt);
+                    let transfer: Vec<Complex<f32>> =
+                        transfer.map(|f| Complex::new(f.re as f32, f.im as f32)).collect();
+                    self.rows.push(TableRow { first: self.values.len(), samples });
+                    spectra.iter().for_each(|spectra| filter.respond(spectra, &transfer, &mut self.values));
+                }
             }
         }
-    }
-
-    /// Index into [`values`](Self::values).
-    fn index(&self, class: usize, column: usize, time: usize) -> usize {
-        (class * self.columns + column) * self.samples + time
     }
 
     /// Length of the wind's period, in seconds.
@@ -106,23 +115,31 @@ impl ResponseTable {
         self.samples as f64 * f64::from(self.time_step_s)
     }
 
-    /// The responses of a class at a place of the table, periodic in time, by a Catmull-Rom spline. Classes and columns beyond the
-    /// last count as the last.
-    pub fn response(&self, class: usize, place: &TablePlace) -> Vec4 {
-        self.blend(class, place, &self.spline(place))
+    /// The responses of a row of the [grid](OscillatorGrid::weights) at a place of the table, periodic in time, by a
+    /// Catmull-Rom spline. Rows and columns beyond the last count as the last.
+    pub fn response(&self, row: usize, place: &TablePlace) -> Vec4 {
+        let row = self.rows[row.min(self.rows.len() - 1)];
+        self.blend(row, place, &self.spline(place, row.samples))
     }
 
-    /// The responses of all classes at a place; as many as `out` has room for.
-    pub fn responses(&self, place: &TablePlace, out: &mut [Vec4]) {
-        let spline = self.spline(place);
-        for (class, response) in out.iter_mut().enumerate().take(self.classes.quasi_static() + 1) {
-            *response = self.blend(class, place, &spline);
-        }
+    /// The responses of some rows at a place, in place of what `out` held.
+    pub fn responses(&self, place: &TablePlace, rows: &[u32], out: &mut Vec<Vec4>) {
+        // Rows of a class, and often of some classes, have the same number of samples.
+        let mut spline = self.spline(place, 1);
+        let mut samples = 1;
+        out.clear();
+        out.extend(rows.iter().map(|&row| {
+            let row = self.rows[(row as usize).min(self.rows.len() - 1)];
+            if row.samples != samples {
+                (spline, samples) = (self.spline(place, row.samples), row.samples);
+            }
+            self.blend(row, place, &spline)
+        }));
     }
 
     /// The wind's velocity at a place, m/s in wind coordinates, by a Catmull-Rom spline.
     pub fn velocity(&self, place: &TablePlace) -> Vec3 {
-        let spline = self.spline(place);
+        let spline = self.spline(place, self.samples);
         let of_column = |column: usize| {
             let start = column.min(self.columns - 1) * self.samples;
             spline.of(&self.velocities[start..start + self.samples])
@@ -130,18 +147,16 @@ impl ResponseTable {
         place.sum(of_column).truncate()
     }
 
-    fn blend(&self, class: usize, place: &TablePlace, spline: &SplinePlace) -> Vec4 {
-        place.sum(|column| spline.of(self.series(class, column)))
+    fn blend(&self, row: TableRow, place: &TablePlace, spline: &SplinePlace) -> Vec4 {
+        place.sum(|column| {
+            let start = row.first + column.min(self.columns - 1) * row.samples;
+            spline.of(&self.values[start..start + row.samples])
+        })
     }
 
-    fn series(&self, class: usize, column: usize) -> &[Vec4] {
-        let class = class.min(self.classes.quasi_static());
-        let start = self.index(class, column.min(self.columns - 1), 0);
-        &self.values[start..start + self.samples]
-    }
-
-    fn spline(&self, place: &TablePlace) -> SplinePlace {
-        SplinePlace::new(place.tau_s / f64::from(self.time_step_s), self.samples)
+    /// A time in a series of so many samples a period.
+    fn spline(&self, place: &TablePlace, samples: usize) -> SplinePlace {
+        SplinePlace::new(place.tau_s / self.period_s() * samples as f64, samples)
     }
 }
 
@@ -202,7 +217,10 @@ type SignalSpectra = [Vec<Complex<f32>>; 2];
 
 /// Filters four real signals of a period by a transfer function.
 struct PeriodicFilter {
-    forward: Arc<dyn Fft<f32>>,
+    planner: FftPlanner<f32>,
+    /// Samples of the signals.
+    samples: usize,
+    /// To so many samples.
     inverse: Arc<dyn Fft<f32>>,
     work: [Vec<Complex<f32>>; 2],
     scratch: Vec<Complex<f32>>,
@@ -211,10 +229,8 @@ struct PeriodicFilter {
 impl PeriodicFilter {
     fn new(samples: usize) -> Self {
         let mut planner = FftPlanner::new();
-        let (forward, inverse) = (planner.plan_fft_forward(samples), planner.plan_fft_inverse(samples));
-        let scratch = forward.get_inplace_scratch_len().max(inverse.get_inplace_scratch_len());
-        let zeros = |length| vec![Complex::ZERO; length];
-        Self { forward, inverse, work: [zeros(samples), zeros(samples)], scratch: zeros(scratch) }
+        let inverse = planner.plan_fft_inverse(samples);
+        Self { planner, samples, inverse, work: [Vec::new(), Vec::new()], scratch: Vec::new() }
     }
 
     fn spectra(&mut self, signals: &[Vec4]) -> SignalSpectra {
@@ -222,39 +238,46 @@ impl PeriodicFilter {
             signals.iter().map(|signal| Complex::new(signal.x, signal.y)).collect(),
             signals.iter().map(|signal| Complex::new(signal.z, signal.w)).collect(),
         ];
+        let forward = self.planner.plan_fft_forward(self.samples);
         for spectrum in &mut spectra {
-            self.forward.process_with_scratch(spectrum, &mut self.scratch);
+            forward.process(spectrum);
         }
         spectra
     }
 
-    fn respond(&mut self, spectra: &SignalSpectra, transfer: &[Complex<f32>], out: &mut [Vec4]) {
+    /// Chooses how many samples responses have from now on, at most as many as the signals.
+    fn resample(&mut self, samples: usize) {
+        self.inverse = self.planner.plan_fft_inverse(samples);
+        self.scratch.resize(self.inverse.get_inplace_scratch_len(), Complex::ZERO);
+        for work in &mut self.work {
+            work.clear();
+            work.resize(samples, Complex::ZERO);
+        }
+    }
+
+    /// Appends the response to one column's signals. `transfer` has the bins from 0 to the middle.
+    fn respond(&mut self, spectra: &SignalSpectra, transfer: &[Complex<f32>], out: &mut Vec<Vec4>) {
+        // The transforms do not divide by the number of samples.
+        let share = 1.0 / self.samples as f32;
         for (work, spectrum) in self.work.iter_mut().zip(spectra) {
-            for ((product, value), factor) in work.iter_mut().zip(spectrum).zip(transfer) {
-                *product = value * factor;
+            let count = work.len();
+            work[0] = spectrum[0] * transfer[0] * share;
+            for bin in 1..count.div_ceil(2) {
+                let factor = transfer[bin] * share;
+                work[bin] = spectrum[bin] * factor;
+                work[count - bin] = spectrum[self.samples - bin] * factor.conj();
+            }
+            // The bin in the middle stands for both signs at once: it stays real, and of a longer series nothing is known of it.
+            if count.is_multiple_of(2) {
+                let is_whole = count == self.samples;
+                work[count / 2] =
+                    if is_whole { spectrum[count / 2] * (transfer[count / 2].re * share) } else { Complex::ZERO };
             }
             self.inverse.process_with_scratch(work, &mut self.scratch);
         }
-        for ((response, xy), zw) in out.iter_mut().zip(&self.work[0]).zip(&self.work[1]) {
-            *response = Vec4::new(xy.re, xy.im, zw.re, zw.im);
-        }
+        let [xy, zw] = &self.work;
+        out.extend(xy.iter().zip(zw).map(|(xy, zw)| Vec4::new(xy.re, xy.im, zw.re, zw.im)));
     }
-}
-
-/// The transfer function at all bins of a period, divided by their number (the inverse transform does not).
-fn transfer_function(samples: usize, time_step_s: f32, frequency_hz: f32, damping_ratio: f32) -> Vec<Complex<f32>> {
-    let omega_n = TAU * f64::from(frequency_hz);
-    let damping = f64::from(damping_ratio.max(LEAST_DAMPING_RATIO));
-    let omega_step = TAU / (samples as f64 * f64::from(time_step_s));
-    let value = |bin: usize| {
-        // Bins above the middle are negative frequencies; the middle one, both at once, must stay real.
-        let signed = if 2 * bin > samples { bin as f64 - samples as f64 } else { bin as f64 };
-        let ratio = signed * omega_step / omega_n;
-        let factor = Complex::new(1.0 - ratio * ratio, 2.0 * damping * ratio).inv() / samples as f64;
-        let imaginary = if 2 * bin == samples { 0.0 } else { factor.im as f32 };
-        Complex::new(factor.re as f32, imaginary)
-    };
-    (0..samples).map(value).collect()
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use bevy::{asset::embedded_asset, prelude::*, shader::load_shader_library};
 /// Makes the shaders of this room known to the app.
 pub(crate) fn load_shaders(app: &mut App) {
     load_shader_library!(app, "shaders/beam.wesl");
+    load_shader_library!(app, "shaders/beam_sway.wesl");
     load_shader_library!(app, "shaders/cross_fade.wesl");
     load_shader_library!(app, "shaders/frame.wesl");
     load_shader_library!(app, "shaders/impostor.wesl");

@@ -7,9 +7,11 @@ use super::{
 use crate::{
     dynamics::{
         RestingLeaf,
-        pose::{BeamPose, TreePoser},
+        pose::{BeamPose, TreeInWind, TreePoser},
     },
-    tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, SpeciesModels, Tree, TreeBeams, TreeLeaves, TreeModel},
+    tree::{
+        Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Season, SpeciesModels, Tree, TreeBeams, TreeLeaves, TreeModel,
+    },
     wind::WindClock,
 };
 use bevy::{math::Vec3A, prelude::*};
@@ -23,7 +25,7 @@ pub struct TreePose {
     /// One for each wind that blows: two while one fades into another.
     posers: [TreePoser; 2],
     /// What the posers were made for.
-    made_for: Option<(u64, AssetId<TreeModel>, GlobalTransform)>,
+    made_for: Option<(u64, AssetId<TreeModel>, GlobalTransform, f32)>,
     free_angles: Vec<Vec3A>,
     responses: Vec<Vec4>,
 }
@@ -70,21 +72,30 @@ pub(super) fn articulate_trees(
 pub(super) fn pose_trees(
     sway: Res<ActiveSway>,
     clock: Res<WindClock>,
+    season: Res<Season>,
     models: Res<Assets<TreeModel>>,
-    mut trees: Query<(&Grown, &Transform, &GlobalTransform, Has<ChildOf>, &mut TreePose)>,
+    mut trees: Query<(&Tree, &Grown, &Transform, &GlobalTransform, Has<ChildOf>, &mut TreePose)>,
 ) {
-    trees.par_iter_mut().for_each(|(grown, transform, global, is_child, mut tree)| {
+    trees.par_iter_mut().for_each(|(of, grown, transform, global, is_child, mut tree)| {
         let Some(model) = models.get(&grown.model) else { return };
         let stands = if is_child { *global } else { GlobalTransform::from(*transform) };
-        tree.refresh(&sway, grown.model.id(), model, stands);
+        let leaf_share = model.leaf_season.share(season.wrapped() + of.season_shift());
+        tree.refresh(&sway, grown.model.id(), model, stands, leaf_share);
         tree.follow(&sway, clock.time_s, stands);
     });
 }
 
 impl TreePose {
-    /// Looks the load coefficients up again when the wind, the model or the tree's place is another.
-    fn refresh(&mut self, sway: &ActiveSway, id: AssetId<TreeModel>, model: &TreeModel, stands: GlobalTransform) {
-        let key = (sway.generation(), id, stands);
+    /// Looks the load coefficients up again when the wind, the model, the tree's place or its share of leaves is another.
+    fn refresh(
+        &mut self,
+        sway: &ActiveSway,
+        id: AssetId<TreeModel>,
+        model: &TreeModel,
+        stands: GlobalTransform,
+        leaf_share: f32,
+    ) {
+        let key = (sway.generation(), id, stands, leaf_share);
         if self.made_for == Some(key) {
             return;
         }
@@ -92,7 +103,8 @@ impl TreePose {
         for (poser, WeightedResponse { response, .. }) in self.posers.iter_mut().zip(sway.now()) {
             let to_wind = wind_from_world(response) * world_from_local(&stands);
             let scale = stands.affine().matrix3.determinant().abs().cbrt();
-            poser.prepare(&model.beams, response.basis.map(), &response.table.classes, to_wind, scale);
+            let (map, wind) = (response.basis.map(), &response.beam_wind);
+            poser.prepare(&model.beams, &TreeInWind { map, wind, to_wind, scale, leaf_share });
         }
         self.made_for = Some(key);
     }
@@ -104,8 +116,7 @@ impl TreePose {
         self.free_angles.resize(self.beams.len(), Vec3A::ZERO);
         for (poser, WeightedResponse { response, weight }) in self.posers.iter().zip(sway.now()) {
             let place = response.place(stands.translation(), time_s);
-            self.responses.resize(response.table.classes.count, Vec4::ZERO);
-            response.table.responses(&place, &mut self.responses);
+            response.table.responses(&place, poser.rows(), &mut self.responses);
             poser.add_free_angles(&self.responses, weight, &mut self.free_angles);
             let velocity = response.field.frame().to_world(response.table.velocity(&place));
             self.wind += weight * (local_from_world * velocity);

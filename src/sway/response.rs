@@ -2,9 +2,12 @@
 
 use crate::{
     dynamics::{
+        beam::{BeamWind, most_pressure_share},
         direction_map::LoadCoefficients,
         frequency_classes::FrequencyClasses,
         load_basis::{LoadBasis, LoadBasisKind},
+        mean_wind::MeanWind,
+        oscillator_grid::OscillatorGrid,
         response::{ResponseTable, TablePlace},
     },
     wind::{REFERENCE_HEIGHT_M, WindField, cross_flow_pressure},
@@ -18,8 +21,8 @@ use std::sync::Arc;
 pub struct SwaySettings {
     /// From which loads the response of any beam is put together.
     pub basis: LoadBasisKind,
-    /// Damping ratio of every oscillator, of critical; range 0.01..=1. Whole trees in leaf: 0.08 to nearly critical, most of
-    /// it the drag of the foliage; bare trunks 0.01 to 0.08 (Moore & Maguire 2004, 2005).
+    /// Damping ratio of the wood and the roots, of critical; range 0.01..=1. What drag adds follows from each beam's load and
+    /// the wind. Bare trunks have 0.01 to 0.08, and whole trees in leaf more (Moore & Maguire 2004, 2005).
     pub damping_ratio: f32,
     /// Height above ground at which the table's wind is taken, m; 1..=100. Loads at other heights follow the mean profile.
     pub reference_height_m: f32,
@@ -27,7 +30,7 @@ pub struct SwaySettings {
 
 impl Default for SwaySettings {
     fn default() -> Self {
-        Self { basis: LoadBasisKind::default(), damping_ratio: 0.15, reference_height_m: REFERENCE_HEIGHT_M }
+        Self { basis: LoadBasisKind::default(), damping_ratio: 0.05, reference_height_m: REFERENCE_HEIGHT_M }
     }
 }
 
@@ -52,9 +55,11 @@ pub struct WindResponse {
     pub field: Arc<WindField>,
     /// What directions the loads have.
     pub basis: LoadBasis,
-    /// The responses of unit oscillators over frequency class, column and time.
+    /// The responses of unit oscillators over frequency class, size, damping, column and time.
     pub table: ResponseTable,
-    /// No beam of any direction and class is pressed harder at any place and time, m²/s².
+    /// The mean wind and the oscillators, as beams feel them.
+    pub beam_wind: BeamWind,
+    /// No beam is pressed harder at any place and time, m²/s²: for [`TreeModel::bounds_under`](crate::tree::TreeModel::bounds_under).
     pub strongest_pressure: f32,
 }
 
@@ -70,15 +75,12 @@ impl WindResponse {
             })
             .collect();
         let basis = LoadBasis::new(settings.basis, &columns.concat(), cross_flow_pressure);
-        let table = ResponseTable::new(
-            &columns,
-            resolution.time_step_s,
-            &basis,
-            FrequencyClasses::default(),
-            settings.damping_ratio,
-        );
-        let strongest_pressure = strongest_pressure(&basis, &table);
-        Self { field, basis, table, strongest_pressure }
+        let mean = MeanWind::new(field.profile(), settings.reference_height_m);
+        let decay = field.settings().coherence.along.lateral;
+        let grid = OscillatorGrid::new(FrequencyClasses::default(), settings.damping_ratio, mean.speed_m_s, decay);
+        let table = ResponseTable::new(&columns, resolution.time_step_s, &basis, grid);
+        let strongest_pressure = most_pressure_share(&mean) * strongest_pressure(&basis, &table);
+        Self { field, basis, table, beam_wind: BeamWind { mean, grid }, strongest_pressure }
     }
 
     /// Where a tree at `position` stands in the periodic tables at a time: it reads the same wind there as
@@ -131,10 +133,10 @@ mod tests {
         for _ in 0..300_000 {
             let mut odd = || random.random_range(-1.0..1.0_f32);
             let direction = Vec3::new(odd(), odd(), odd()).normalize_or(Vec3::Y);
-            let class = random.random_range(0..response.table.classes.count);
+            let row = random.random_range(0..response.table.grid.rows());
             let time_s = random.random_range(0.0..response.table.period_s());
             let across = Vec3::Z * random.random_range(-500.0..500.0_f32);
-            let signals = response.table.response(class, &response.place(across, time_s));
+            let signals = response.table.response(row, &response.place(across, time_s));
             greatest = greatest.max(response.basis.map().coefficients(direction).load(signals).length());
         }
         let strongest = response.strongest_pressure;

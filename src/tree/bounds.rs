@@ -8,7 +8,10 @@
 //! of the limit, which is found by bending the tree.
 
 use super::vertices::{LeafVertices, WoodVertices};
-use crate::dynamics::pose::{BeamDynamics, BeamPose, SLOPE_TIP, TIP_ANGLE_LIMIT, TreePoser, mode_shape};
+use crate::dynamics::{
+    beam::BeamDynamics,
+    pose::{BeamPose, SLOPE_TIP, TIP_ANGLE_LIMIT, TreePoser, mode_shape},
+};
 use bevy::math::Vec3;
 
 /// An axis-aligned box.
@@ -95,7 +98,7 @@ fn bounds_under(beams: &[BeamDynamics], reaches_m: &[f32], pressure: f32) -> Swa
     let mut bounds = SwayBounds::ORIGIN;
     let mut carried: Vec<Carried> = Vec::with_capacity(beams.len());
     for (beam, reach_m) in beams.iter().zip(reaches_m) {
-        let free_rad = SLOPE_TIP * beam.gain * pressure;
+        let free_rad = SLOPE_TIP * greatest_gain(beam) * pressure;
         let tip_rad = free_rad.min(TIP_ANGLE_LIMIT);
         let own = match carried.get(beam.parent as usize) {
             Some(parent) => {
@@ -111,6 +114,11 @@ fn bounds_under(beams: &[BeamDynamics], reaches_m: &[f32], pressure: f32) -> Swa
         carried.push(own);
     }
     bounds
+}
+
+/// Of a beam in leaf or bare, s^2/m^2.
+fn greatest_gain(beam: &BeamDynamics) -> f32 {
+    beam.in_leaf.greatest_gain().max(beam.bare.greatest_gain())
 }
 
 /// Directions into which the whole tree is bent to its limit to find its bounds.
@@ -222,7 +230,7 @@ mod tests {
                     let chaos = f32::from(round % 3) * 0.5;
                     assert!(holds(bounds, &model, |beam| {
                         let load = (wind + chaos * odd(&mut random)).normalize_or_zero() * pressure;
-                        load.reject_from_normalized(beam.direction) * (SLOPE_TIP * beam.gain)
+                        load.reject_from_normalized(beam.direction) * (SLOPE_TIP * greatest_gain(beam))
                     }));
                 }
             }

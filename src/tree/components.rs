@@ -67,7 +67,6 @@ impl Tree {
     }
 
     /// How far it is ahead of the season, in years.
-    #[cfg(feature = "render")]
     pub(crate) fn season_shift(&self) -> f32 {
         let days = if self.season_days.is_nan() { 0.0 } else { self.season_days };
         days.clamp(-182.5, 182.5) / 365.0

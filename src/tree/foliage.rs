@@ -91,9 +91,12 @@ pub struct Foliage {
     pub translucency: f32,
     /// Mass of the leaves for each square metre of a spray's size squared, kg/m^2: 0 to 10.
     pub mass_per_area_kg_m2: f32,
-    /// Drag coefficient of a spray, by its size squared, 0 to 2; far below that of a plate, because sprays fold away and
-    /// shelter one another.
+    /// Drag coefficient of a spray in a wind of 10 m/s, by its size squared, 0 to 2; far below that of a plate, because sprays
+    /// fold away and shelter one another.
     pub drag_coefficient: f32,
+    /// How the drag of the tree in leaf falls with the wind's speed: above 4 m/s it grows with the speed to the power 2 + this,
+    /// -1 to 0 (Vogel's exponent). Oaks in leaf: 1.6 to 1.7 (Angelou et al. 2019).
+    pub drag_exponent: f32,
     /// How they respond to the wind.
     pub response: LeafResponse,
 }
@@ -123,6 +126,7 @@ impl Default for Foliage {
             translucency: 0.35,
             mass_per_area_kg_m2: 0.2,
             drag_coefficient: 0.012,
+            drag_exponent: -0.35,
             response: LeafResponse::default(),
         }
     }
@@ -148,6 +152,7 @@ impl Foliage {
         require("translucency", self.translucency, 0.0..=1.0)?;
         require("mass_per_area_kg_m2", self.mass_per_area_kg_m2, 0.0..=10.0)?;
         require("drag_coefficient", self.drag_coefficient, 0.0..=2.0)?;
+        require("drag_exponent", self.drag_exponent, -1.0..=0.0)?;
         self.response.validate().map_err(|error| error.inside("response"))?;
         self.leaf.validate().map_err(|error| error.inside("leaf"))
     }

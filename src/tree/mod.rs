@@ -39,6 +39,7 @@ pub mod individual;
 mod joint;
 pub mod leaf;
 mod leaf_mesh;
+mod leaf_season;
 pub mod mechanics;
 mod model;
 pub mod phenology;
@@ -60,6 +61,7 @@ pub use ecs::{
     species_models::{BakedSpecies, BakedStage, SpeciesBaked, SpeciesModels, bake_variants},
 };
 pub use generator::Growth;
+pub use leaf_season::LeafSeason;
 pub use model::TreeModel;
 pub use plugin::TreePlugin;
 pub use species::{Species, SpeciesError};

@@ -4,13 +4,14 @@ use super::{
     bounds::{PressureStep, SwayBounds, bounds_by_step, limit_bounds, reaches_m},
     individual::grow,
     leaf_mesh::leaves,
+    leaf_season::LeafSeason,
     mechanics::beam_dynamics,
     skeleton::Skeleton,
     species::Species,
     vertices::{LeafVertices, WoodVertices},
     wood_mesh::wood,
 };
-use crate::dynamics::pose::BeamDynamics;
+use crate::dynamics::beam::BeamDynamics;
 use bevy::{asset::Asset, reflect::TypePath};
 use std::sync::Arc;
 
@@ -22,6 +23,8 @@ pub struct TreeModel {
     pub skeleton: Arc<Skeleton>,
     /// The beams as they are posed, in the order of the skeleton's.
     pub beams: Vec<BeamDynamics>,
+    /// When it has leaves, for its poses.
+    pub leaf_season: LeafSeason,
     /// Trunk and branches.
     pub wood: Arc<WoodVertices>,
     /// The foliage; empty for a bare tree.
@@ -43,7 +46,8 @@ impl TreeModel {
         let bounds = limit_bounds(&beams, &reaches_m);
         let bounds_by_step = bounds_by_step(&beams, &reaches_m, bounds);
         let (skeleton, wood, leaves) = (Arc::new(skeleton), Arc::new(wood), Arc::new(leaves));
-        Self { skeleton, beams, wood, leaves, bounds, bounds_by_step }
+        let leaf_season = LeafSeason::of(&species.phenology);
+        Self { skeleton, beams, leaf_season, wood, leaves, bounds, bounds_by_step }
     }
 
     /// Box around the tree in every pose that it takes while no beam's static-equivalent wind pressure is above this,

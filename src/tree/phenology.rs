@@ -74,7 +74,7 @@ pub struct LeafState {
 }
 
 /// How long a cluster takes to fall, as a share of the year: five days.
-const DROP: f32 = 0.014;
+pub(super) const DROP: f32 = 0.014;
 /// How long after that some of its leaves are still in the air, as a share of the year: two weeks.
 const DRIFT: f32 = 0.04;
 /// So much earlier than its species does a tree lose its leaves at most: five weeks.

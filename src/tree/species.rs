@@ -70,6 +70,9 @@ pub struct Wood {
     pub young_modulus_pa: f32,
     /// Density of the living wood, water and all, kg/m^3: 100 to 2000.
     pub density_kg_m3: f32,
+    /// How the drag of the bare tree falls with the wind's speed: it grows with the speed to the power 2 + this, -1 to 0. Bare
+    /// oaks: 1.9 to 2.0 (Angelou et al. 2019).
+    pub drag_exponent: f32,
     /// Its bark.
     pub bark: Bark,
 }
@@ -78,7 +81,7 @@ impl Default for Wood {
     /// Green oak: Young's modulus and density after the Wood Handbook (Forest Products Laboratory, 2010, table 5-3:
     /// white oak, green).
     fn default() -> Self {
-        Self { young_modulus_pa: 8.6e9, density_kg_m3: 1000.0, bark: Bark::default() }
+        Self { young_modulus_pa: 8.6e9, density_kg_m3: 1000.0, drag_exponent: -0.05, bark: Bark::default() }
     }
 }
 
@@ -86,6 +89,7 @@ impl Wood {
     fn validate(&self) -> Result<(), SettingError> {
         require("young_modulus_pa", self.young_modulus_pa, 1.0e8..=1.0e11)?;
         require("density_kg_m3", self.density_kg_m3, 100.0..=2000.0)?;
+        require("drag_exponent", self.drag_exponent, -1.0..=0.0)?;
         self.bark.validate().map_err(|error| error.inside("bark"))
     }
 }

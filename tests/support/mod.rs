@@ -21,7 +21,7 @@ use bevy::{
     time::TimeUpdateStrategy,
 };
 use bevy_windwood::{
-    dynamics::{BeamPose, TreePoser},
+    dynamics::{BeamPose, TreeInWind, TreePoser},
     prelude::*,
     tree::TreeModel,
 };
@@ -89,10 +89,11 @@ pub fn cpu_poses(sway: &ActiveSway, model: &TreeModel, tree: &Transform, time_s:
         let frame = wind.field.frame();
         let wind_from_world = Mat3::from_cols(frame.along, Vec3::Y, frame.across).transpose();
         let to_wind = wind_from_world * Mat3::from_quat(tree.rotation);
-        let classes = &wind.table.classes;
-        let poser = TreePoser::new(&model.beams, wind.basis.map(), classes, to_wind, tree.scale.y);
-        let mut responses = vec![Vec4::ZERO; classes.count];
-        wind.table.responses(&wind.place(tree.translation, time_s), &mut responses);
+        let (map, scale) = (wind.basis.map(), tree.scale.y);
+        let poser =
+            TreePoser::new(&model.beams, &TreeInWind { map, wind: &wind.beam_wind, to_wind, scale, leaf_share: 1.0 });
+        let mut responses = Vec::new();
+        wind.table.responses(&wind.place(tree.translation, time_s), poser.rows(), &mut responses);
         poser.pose(&responses, &mut poses);
     }
     poses

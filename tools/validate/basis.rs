@@ -1,9 +1,10 @@
 //! The load bases against direct integration of each beam's own load by its own oscillator.
 
 use crate::report::Report;
+use crate::total_error;
 use bevy::math::{Vec3, Vec4};
 use bevy_windwood::dynamics::{
-    ExactStep, FrequencyClasses, LoadBasis, LoadBasisKind, OscillatorState, ResponseTable, TablePlace,
+    ExactStep, FrequencyClasses, LoadBasis, LoadBasisKind, OscillatorGrid, OscillatorState, ResponseTable, TablePlace,
 };
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
@@ -12,20 +13,21 @@ use rustfft::num_complex::Complex;
 use std::f64::consts::TAU;
 
 const SEED: u64 = 25;
-const MEAN_SPEED_M_S: f64 = 8.0;
+pub const MEAN_SPEED_M_S: f64 = 8.0;
 const HEIGHT_M: f64 = 10.0;
-const TURBULENCE_INTENSITY: f64 = 0.2;
-const SAMPLES: usize = 4096;
-const TIME_STEP_S: f64 = 1.0 / 16.0;
+pub const TURBULENCE_INTENSITY: f64 = 0.2;
+pub const SAMPLES: usize = 4096;
+pub const TIME_STEP_S: f64 = 1.0 / 16.0;
 const DAMPING_RATIO: f32 = 0.1;
+const DAMPING: f64 = DAMPING_RATIO as f64;
 const DIRECTIONS: usize = 250;
 /// Steps of the direct integration per step of the table.
-const OVERSAMPLING: usize = 8;
+pub const OVERSAMPLING: usize = 8;
 /// Frequency classes of 0.17, 0.54, 0.99 and 2.2 Hz.
 const CLASSES: [usize; 4] = [6, 12, 15, 19];
 
 pub fn run() -> Report {
-    let fine = test_wind(SEED, SAMPLES, OVERSAMPLING);
+    let fine = test_wind(SEED, SAMPLES, OVERSAMPLING, TURBULENCE_INTENSITY);
     let experiment = Experiment::new(&fine);
     let mut report = Report::default();
 
@@ -46,6 +48,7 @@ pub fn run() -> Report {
     report.record("class_rounding_median", quantile(rounding.clone(), 0.5), "frequency to the nearest class alone");
     report.record("class_rounding_p95", quantile(rounding, 0.95), "frequency to the nearest class alone");
     report.record("quasi_static_5_hz", experiment.quasi_static_error(5.0), "resonance left out above the band");
+    total_error::run(&mut report);
     report
 }
 
@@ -69,16 +72,26 @@ impl<'a> Experiment<'a> {
         let classes = FrequencyClasses::default();
         let direct = CLASSES.map(|class| {
             let frequency_hz = f64::from(classes.frequency_hz(class));
-            directions.iter().map(|&direction| integrate(fine, direction, frequency_hz)).collect()
+            directions.iter().map(|&direction| integrate(fine, direction, frequency_hz, DAMPING)).collect()
         });
         let coarse = fine.iter().step_by(OVERSAMPLING).copied().collect();
         Self { fine, coarse, directions, classes, direct: direct.into() }
     }
 
+    /// Oscillators that feel the wind of one point: no coherence is lost between the places of a load.
+    fn grid(&self) -> OscillatorGrid {
+        OscillatorGrid::new(self.classes, DAMPING_RATIO, MEAN_SPEED_M_S as f32, 0.0)
+    }
+
+    /// The row of the smallest body of a class, with the damping of the direct integration.
+    fn row(&self, class: usize) -> usize {
+        self.grid().weights(class as f32, 0.0, DAMPING_RATIO).rows[0] as usize
+    }
+
     fn table(&self, kind: LoadBasisKind) -> (LoadBasis, ResponseTable) {
         let basis = LoadBasis::new(kind, &self.coarse, drag);
         let columns = [self.coarse.clone()];
-        let table = ResponseTable::new(&columns, TIME_STEP_S as f32, &basis, self.classes, DAMPING_RATIO);
+        let table = ResponseTable::new(&columns, TIME_STEP_S as f32, &basis, self.grid());
         (basis, table)
     }
 
@@ -89,7 +102,9 @@ impl<'a> Experiment<'a> {
         for (&class, direct) in CLASSES.iter().zip(&self.direct) {
             let responses: Vec<Vec4> = (0..self.fine.len())
                 .step_by(stride)
-                .map(|step| table.response(class, &on_column(step as f64 * TIME_STEP_S / OVERSAMPLING as f64)))
+                .map(|step| {
+                    table.response(self.row(class), &on_column(step as f64 * TIME_STEP_S / OVERSAMPLING as f64))
+                })
                 .collect();
             errors.extend(self.directions.iter().zip(direct).map(|(&direction, direct)| {
                 let coefficients = basis.coefficients(direction);
@@ -107,10 +122,10 @@ impl<'a> Experiment<'a> {
         let columns = [self.fine.to_vec()];
         let basis = LoadBasis::new(LoadBasisKind::Principal, &self.coarse, drag);
         let step_s = TIME_STEP_S / OVERSAMPLING as f64;
-        let fine_table = ResponseTable::new(&columns, step_s as f32, &basis, self.classes, DAMPING_RATIO);
+        let fine_table = ResponseTable::new(&columns, step_s as f32, &basis, self.grid());
         let series = |table: &ResponseTable| -> Vec<Vec3> {
             (0..self.fine.len())
-                .map(|step| table.response(class, &on_column(step as f64 * step_s)).truncate())
+                .map(|step| table.response(self.row(class), &on_column(step as f64 * step_s)).truncate())
                 .collect()
         };
         relative_error(&series(&table), &series(&fine_table))
@@ -122,8 +137,8 @@ impl<'a> Experiment<'a> {
         let error = |&direction: &Vec3| {
             let frequency_hz = 0.1 * 30f32.powf(random.random::<f32>());
             let class = self.classes.nearest(self.classes.coordinate(frequency_hz));
-            let rounded = integrate(self.fine, direction, f64::from(self.classes.frequency_hz(class)));
-            relative_error(&rounded, &integrate(self.fine, direction, f64::from(frequency_hz)))
+            let rounded = integrate(self.fine, direction, f64::from(self.classes.frequency_hz(class)), DAMPING);
+            relative_error(&rounded, &integrate(self.fine, direction, f64::from(frequency_hz), DAMPING))
         };
         self.directions.iter().map(error).collect()
     }
@@ -132,24 +147,24 @@ impl<'a> Experiment<'a> {
     fn quasi_static_error(&self, frequency_hz: f64) -> f64 {
         let error = |&direction: &Vec3| {
             let load: Vec<Vec3> = self.fine.iter().map(|&velocity| drag(velocity, direction)).collect();
-            relative_error(&load, &integrate(self.fine, direction, frequency_hz))
+            relative_error(&load, &integrate(self.fine, direction, frequency_hz, DAMPING))
         };
         quantile(self.directions.iter().map(error).collect(), 0.5)
     }
 }
 
 /// Quadratic drag, `|u_n| u_n`.
-fn drag(velocity: Vec3, direction: Vec3) -> Vec3 {
+pub fn drag(velocity: Vec3, direction: Vec3) -> Vec3 {
     let normal = velocity - velocity.dot(direction) * direction;
     normal.length() * normal
 }
 
 /// The steady motion of one beam over a period: its own load on its own oscillator, stepped through two periods. Scaled by the
 /// square of the natural frequency, as the table is.
-fn integrate(fine: &[Vec3], direction: Vec3, frequency_hz: f64) -> Vec<Vec3> {
+pub fn integrate(fine: &[Vec3], direction: Vec3, frequency_hz: f64, damping_ratio: f64) -> Vec<Vec3> {
     let omega = TAU * frequency_hz;
     let step_s = TIME_STEP_S / OVERSAMPLING as f64;
-    let step = ExactStep::new(omega, f64::from(DAMPING_RATIO), step_s).expect("a frequency above zero");
+    let step = ExactStep::new(omega, damping_ratio, step_s).expect("a frequency above zero");
     let stiffness = (omega * omega) as f32;
     let load: Vec<Vec3> = fine.iter().map(|&velocity| stiffness * drag(velocity, direction)).collect();
     let mut state = OscillatorState::default();
@@ -166,7 +181,7 @@ fn on_column(tau_s: f64) -> TablePlace {
 }
 
 /// Rms of the difference of the moving parts over the rms of the moving part of the reference.
-fn relative_error(values: &[Vec3], reference: &[Vec3]) -> f64 {
+pub fn relative_error(values: &[Vec3], reference: &[Vec3]) -> f64 {
     let mean = |series: &[Vec3]| series.iter().map(|v| v.as_dvec3()).sum::<bevy::math::DVec3>() / series.len() as f64;
     let (mean_value, mean_reference) = (mean(values), mean(reference));
     let (mut error, mut size) = (0.0, 0.0);
@@ -178,12 +193,12 @@ fn relative_error(values: &[Vec3], reference: &[Vec3]) -> f64 {
     (error / size).sqrt()
 }
 
-fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+pub fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     values[((values.len() - 1) as f64 * share).round() as usize]
 }
 
-fn random_direction(random: &mut Xoshiro256PlusPlus) -> Vec3 {
+pub fn random_direction(random: &mut Xoshiro256PlusPlus) -> Vec3 {
     let height = random.random_range(-1.0..1.0f32);
     let azimuth = random.random_range(0.0..std::f32::consts::TAU);
     let radius = (1.0 - height * height).sqrt();
@@ -193,7 +208,7 @@ fn random_direction(random: &mut Xoshiro256PlusPlus) -> Vec3 {
 /// A turbulent wind at one point, in wind coordinates: the spectra of eq. 9, corrected, with random phases. It is written again
 /// here so that the check does not depend on the code it checks. A period of `samples` steps of 1/16 s, at `oversampling`
 /// times as many.
-pub fn test_wind(seed: u64, samples: usize, oversampling: usize) -> Vec<Vec3> {
+pub fn test_wind(seed: u64, samples: usize, oversampling: usize, intensity: f64) -> Vec<Vec3> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let [along, up, across] = [0, 1, 2].map(|component| {
         let count = samples * oversampling;
@@ -207,7 +222,7 @@ pub fn test_wind(seed: u64, samples: usize, oversampling: usize) -> Vec<Vec3> {
         spectrum.into_iter().map(|value| value.re).collect::<Vec<f64>>()
     });
     let rms = (along.iter().map(|u| u * u).sum::<f64>() / along.len() as f64).sqrt();
-    let scale = TURBULENCE_INTENSITY * MEAN_SPEED_M_S / rms;
+    let scale = intensity * MEAN_SPEED_M_S / rms;
     let velocity = |index: usize| {
         Vec3::new(
             (MEAN_SPEED_M_S + scale * along[index]) as f32,

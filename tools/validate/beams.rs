@@ -1,6 +1,6 @@
 //! The cantilever against finite elements, and the periodic steady state against the Duhamel integral.
 
-use crate::basis::test_wind;
+use crate::basis::{TURBULENCE_INTENSITY, test_wind};
 use crate::cantilever::{CantileverMode, TaperedBeam, disc_second_moment_m4, natural_omega_rad_s};
 use crate::oscillator::Oscillator;
 use crate::report::Report;
@@ -98,8 +98,10 @@ fn element_mass(l: f64) -> Matrix4<f64> {
 fn steady_error(oversampling: usize) -> f64 {
     const SAMPLES: usize = 256;
     const PERIODS: usize = 5;
-    let load: Vec<f64> =
-        test_wind(1, SAMPLES, oversampling).iter().map(|wind| f64::from(wind.length() * wind.x)).collect();
+    let load: Vec<f64> = test_wind(1, SAMPLES, oversampling, TURBULENCE_INTENSITY)
+        .iter()
+        .map(|wind| f64::from(wind.length() * wind.x))
+        .collect();
     let mean = load.iter().sum::<f64>() / load.len() as f64;
     let load: Vec<f64> = load.iter().map(|value| value - mean).collect();
     let time_step_s = 1.0 / (16.0 * oversampling as f64);

@@ -29,7 +29,9 @@ mod spectrum;
 mod support;
 mod sway;
 mod terrain;
+mod total_error;
 mod trees;
+mod trees_in_wind;
 #[path = "../support/walk.rs"]
 mod walk;
 

@@ -1,6 +1,25 @@
-use super::super::{direction_map::LoadCoefficients, oracle::cantilever::CantileverMode};
+use super::super::{
+    beam::BeamSway, direction_map::LoadCoefficients, frequency_classes::FrequencyClasses, mean_wind::MeanWind,
+    oracle::cantilever::CantileverMode, oscillator_grid::OscillatorGrid,
+};
 use super::*;
 use bevy::math::{DVec3, Mat3};
+
+/// A sway that feels the table's wind as it is.
+const fn sway(gain: f32, class: f32) -> BeamSway {
+    BeamSway { gain, class, averaging_speed_m_s: 0.0, drag_damping_s_m: 0.0, load_height_m: 10.0, drag_exponent: 0.0 }
+}
+
+fn wind() -> BeamWind {
+    BeamWind {
+        mean: MeanWind::open_country(8.0),
+        grid: OscillatorGrid::new(FrequencyClasses::default(), 0.1, 8.0, 10.0),
+    }
+}
+
+fn poser(beams: &[BeamDynamics], map: &DirectionMap, to_wind: Mat3, scale: f32) -> TreePoser {
+    TreePoser::new(beams, &TreeInWind { map, wind: &wind(), to_wind, scale, leaf_share: 1.0 })
+}
 
 const BEAM: BeamDynamics = BeamDynamics {
     base: Vec3::new(0.5, 1.0, -2.0),
@@ -8,8 +27,8 @@ const BEAM: BeamDynamics = BeamDynamics {
     direction: Vec3::new(0.36, 0.8, 0.48),
     attach: 0.0,
     parent: NO_PARENT,
-    gain: 0.004,
-    class: 7.0,
+    in_leaf: sway(0.004, 7.0),
+    bare: sway(0.006, 8.0),
 };
 
 /// A trunk, a branch and a twig.
@@ -20,7 +39,7 @@ fn hierarchy() -> [BeamDynamics; 3] {
         direction: Vec3::new(0.8, 0.6, 0.0),
         attach: 0.7,
         parent: 0,
-        gain: 0.006,
+        in_leaf: sway(0.006, 7.0),
         ..BEAM
     };
     let twig = BeamDynamics {
@@ -29,8 +48,8 @@ fn hierarchy() -> [BeamDynamics; 3] {
         direction: Vec3::new(0.0, 0.28, -0.96),
         attach: 0.5,
         parent: 1,
-        gain: 0.02,
-        class: 20.0,
+        in_leaf: sway(0.02, 20.0),
+        bare: sway(0.02, 20.0),
     };
     [trunk, branch, twig]
 }
@@ -44,9 +63,9 @@ fn steady_map(pressure: f32) -> DirectionMap {
 }
 
 fn posed(beams: &[BeamDynamics], pressure: f32) -> Vec<BeamPose> {
-    let poser = TreePoser::new(beams, &steady_map(pressure), &FrequencyClasses::default(), Mat3::IDENTITY, 1.0);
+    let poser = poser(beams, &steady_map(pressure), Mat3::IDENTITY, 1.0);
     let mut poses = vec![BeamPose::REST; beams.len()];
-    poser.pose(&[Vec4::ZERO; 23], &mut poses);
+    poser.pose(&[], &mut poses);
     poses
 }
 
@@ -116,7 +135,7 @@ fn deflection_grows_with_the_wind_and_saturates() {
     assert!(angles.iter().all(|&angle| angle <= TIP_ANGLE_LIMIT * (1.0 + 1e-6)));
     // A light wind: the deflection by length is gain times load across the beam.
     let across = (Vec3::X - BEAM.direction.x * BEAM.direction).length();
-    assert!((angles[0] / (SLOPE_TIP * BEAM.gain * 0.01 * across) - 1.0).abs() < 1e-2);
+    assert!((angles[0] / (SLOPE_TIP * BEAM.in_leaf.gain * 0.01 * across) - 1.0).abs() < 1e-2);
 }
 
 #[test]
@@ -174,25 +193,25 @@ fn poses_match_the_slow_recursion() {
 fn pose_turns_with_the_coordinates() {
     let turn = Quat::from_rotation_y(0.7);
     let turned = BeamDynamics { base: turn * BEAM.base, direction: turn * BEAM.direction, ..BEAM };
-    let classes = FrequencyClasses::default();
     let map = steady_map(60.0);
     let mut here = [BeamPose::REST];
     let mut there = [BeamPose::REST];
-    let responses = [Vec4::new(3.0, -2.0, 5.0, 0.0); 23];
-    TreePoser::new(&[turned], &map, &classes, Mat3::IDENTITY, 1.0).pose(&responses, &mut here);
-    TreePoser::new(&[BEAM], &map, &classes, Mat3::from_quat(turn), 1.0).pose(&responses, &mut there);
+    let responses = vec![Vec4::new(3.0, -2.0, 5.0, 0.0); wind().grid.rows()];
+    poser(&[turned], &map, Mat3::IDENTITY, 1.0).pose(&responses, &mut here);
+    poser(&[BEAM], &map, Mat3::from_quat(turn), 1.0).pose(&responses, &mut there);
     let difference = here[0].tip_angle - Vec3A::from(turn * Vec3::from(there[0].tip_angle));
     assert!(difference.length() < 1e-6);
 }
 
 #[test]
 fn larger_instances_use_slower_classes() {
-    let classes = FrequencyClasses::default();
-    let mut responses = [Vec4::ZERO; 23];
-    // A tree 1.22^2 times as large sways two classes below its own.
-    responses[5] = Vec4::new(10.0, 0.0, 0.0, 0.0);
+    let grid = wind().grid;
     let mut poses = [BeamPose::REST];
-    let poser = TreePoser::new(&[BEAM], &steady_map(0.0), &classes, Mat3::IDENTITY, 1.22 * 1.22);
+    let poser = poser(&[BEAM], &steady_map(0.0), Mat3::IDENTITY, 1.22 * 1.22);
+    // A tree 1.22^2 times as large sways two classes below its own.
+    let is_slower = |row: &u32| *row as usize == grid.row(5, 0, 0);
+    let response = |row: &u32| if is_slower(row) { Vec4::new(10.0, 0.0, 0.0, 0.0) } else { Vec4::ZERO };
+    let responses: Vec<Vec4> = poser.rows().iter().map(response).collect();
     poser.pose(&responses, &mut poses);
     assert!(poses[0].tip_angle.length() > 0.01);
 }
@@ -201,14 +220,27 @@ fn larger_instances_use_slower_classes() {
 fn poses_are_finite_for_any_input() {
     let mut beams = hierarchy();
     beams[0].parent = 2;
-    beams[1].gain = f32::NAN;
-    beams[2].gain = f32::MAX;
-    beams[2].class = f32::NAN;
+    beams[1].in_leaf.gain = f32::NAN;
+    beams[2].in_leaf.gain = f32::MAX;
+    beams[2].in_leaf.class = f32::NAN;
     for pose in posed(&beams, 1e30) {
         assert!(pose.tip_angle.is_finite() && pose.rotation.is_finite() && pose.translation.is_finite());
         assert!(pose.tip_angle.length() <= TIP_ANGLE_LIMIT * 1.001);
     }
-    let poser = TreePoser::new(&beams, &steady_map(1.0), &FrequencyClasses::default(), Mat3::IDENTITY, f32::NAN);
+    let poser = poser(&beams, &steady_map(1.0), Mat3::IDENTITY, f32::NAN);
     poser.pose(&[], &mut [BeamPose::REST; 1]);
     assert_eq!((poser.len(), TreePoser::default().is_empty()), (3, true));
+}
+
+#[test]
+fn bare_trees_sway_in_their_own_way() {
+    let map = steady_map(1.0);
+    let tip = |leaf_share| {
+        let tree = TreeInWind { map: &map, wind: &wind(), to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share };
+        let mut poses = [BeamPose::REST];
+        TreePoser::new(&[BEAM], &tree).pose(&[], &mut poses);
+        poses[0].tip_angle.length()
+    };
+    assert!((tip(0.0) / tip(1.0) - 1.5).abs() < 1e-3);
+    assert!((tip(0.5) / tip(1.0) - 1.25).abs() < 1e-3);
 }

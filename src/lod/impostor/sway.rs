@@ -7,9 +7,12 @@
 use bevy::math::Vec3;
 
 use crate::{
-    dynamics::pose::{BeamDynamics, BeamPose, SLOPE_TIP, TIP_ANGLE_LIMIT, TreePoser},
+    dynamics::{
+        beam::{BeamDynamics, BeamSway},
+        pose::{BeamPose, SLOPE_TIP, TIP_ANGLE_LIMIT, TreePoser},
+    },
     lod::{bake::scene::Scene, reference_wind::MEAN_SPEED_M_S},
-    tree::TreeModel,
+    tree::{LeafSeason, TreeModel},
 };
 
 /// Pressure under which vertices are compared, m^2/s^2.
@@ -18,10 +21,12 @@ const PRESSURE_M2_S2: f32 = MEAN_SPEED_M_S * MEAN_SPEED_M_S;
 /// How a tree leans as a whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImpostorSway {
-    /// Sine of the lean for a unit of the pressure across the stem, before it saturates, s^2/m^2.
-    pub gain: f32,
-    /// Frequency class of the stem's lowest beam, as that of a [beam](BeamDynamics).
-    pub class: f32,
+    /// The sway of the stem's lowest beam in leaf, but for the gain: that is of the sine of the lean, before it saturates.
+    pub in_leaf: BeamSway,
+    /// The same while it is bare.
+    pub bare: BeamSway,
+    /// When it has leaves.
+    pub leaf_season: LeafSeason,
 }
 
 impl ImpostorSway {
@@ -33,7 +38,11 @@ impl ImpostorSway {
         let limit = TIP_ANGLE_LIMIT.sin();
         let sine = sine.clamp(0.0, 0.95 * limit);
         let unsaturated = sine / (1.0 - (sine / limit).powi(2)).sqrt();
-        Self { gain: unsaturated / PRESSURE_M2_S2, class: root.class }
+        // As many times the gain of the beam itself, in leaf and bare.
+        let share = unsaturated / (root.in_leaf.open_country_gain() * PRESSURE_M2_S2);
+        let share = if share.is_finite() { share } else { 0.0 };
+        let [in_leaf, bare] = [root.in_leaf, root.bare].map(|sway| BeamSway { gain: share * sway.gain, ..sway });
+        Self { in_leaf, bare, leaf_season: model.leaf_season }
     }
 }
 
@@ -48,8 +57,9 @@ fn nearest_sine(scene: &Scene, model: &TreeModel, heading: Vec3) -> f32 {
 
 /// The tree as it bends under the pressure along `heading`.
 pub(in crate::lod) fn bent(scene: &Scene, model: &TreeModel, heading: Vec3) -> Scene {
-    let tip_angle =
-        |beam: &BeamDynamics| heading.reject_from_normalized(beam.direction) * (SLOPE_TIP * beam.gain * PRESSURE_M2_S2);
+    let tip_angle = |beam: &BeamDynamics| {
+        heading.reject_from_normalized(beam.direction) * (SLOPE_TIP * beam.in_leaf.open_country_gain() * PRESSURE_M2_S2)
+    };
     let mut poses = vec![BeamPose::REST; model.beams.len()];
     TreePoser::bent(&model.beams, tip_angle).pose(&[], &mut poses);
     scene.posed(model, &poses)

@@ -12,7 +12,10 @@ use std::f32::consts::{SQRT_2, TAU};
 
 use super::main_stem::MainStem;
 use crate::{
-    dynamics::pose::{BeamDynamics, BeamPose, SLOPE_TIP, TreePoser},
+    dynamics::{
+        beam::BeamDynamics,
+        pose::{BeamPose, SLOPE_TIP, TreePoser},
+    },
     lod::reference_wind::{MEAN_SPEED_M_S, TURBULENCE_INTENSITY},
     sequence::r2,
     tree::{TreeModel, skeleton::Skeleton},
@@ -46,7 +49,7 @@ fn swing(beam: &BeamDynamics, branch: usize, moment: f32) -> Vec3A {
     let heading = Vec2::from_angle(TAU * heading_turns);
     let across = Vec3::new(heading.x, 0.0, heading.y).reject_from_normalized(beam.direction);
     let load_m2_s2 = GUST_M2_S2 * (TAU * (moment + phase_turns)).sin();
-    Vec3A::from(across * (SLOPE_TIP * beam.gain * load_m2_s2))
+    Vec3A::from(across * (SLOPE_TIP * beam.in_leaf.open_country_gain() * load_m2_s2))
 }
 
 /// For each beam the first one of its branch: a branch sways as a whole.
@@ -81,7 +84,7 @@ mod tests {
             let heading = Vec3::new(heading_rad.cos(), 0.0, heading_rad.sin());
             let row = &model.beams[beam];
             // The load of the rms that the breeze has, as a sine, on what faces it.
-            SLOPE_TIP * row.gain * 50.0 * (heading - row.direction * heading.dot(row.direction))
+            SLOPE_TIP * row.in_leaf.open_country_gain() * 50.0 * (heading - row.direction * heading.dot(row.direction))
         };
         let amplitudes: Vec<Vec3> = (0..model.beams.len()).map(amplitude).collect();
         let swings = |frame: u32| {
@@ -102,7 +105,7 @@ mod tests {
             let is_of_stem = MainStem::of(&model.skeleton).chain().contains(&beam.0);
             let rests = beam.1.tip_angle == Vec3A::ZERO;
             assert!(rests || !is_of_stem);
-            assert!(!rests || is_of_stem || model.beams[beam.0].gain == 0.0, "{}", beam.0);
+            assert!(!rests || is_of_stem || model.beams[beam.0].in_leaf.gain == 0.0, "{}", beam.0);
         }
         let swings = swings(&model);
         assert!(swings[0].len() > 100);

@@ -18,11 +18,20 @@ pub(crate) struct DirtyTable<T> {
     is_written: Vec<bool>,
     /// Rows that the GPU buffer holds.
     capacity: u32,
+    /// Rows that the device can bind at most: the reserve ends there.
+    most_rows: u32,
 }
 
 impl<T> Default for DirtyTable<T> {
     fn default() -> Self {
-        Self { rows: Vec::new(), written: Vec::new(), is_written: Vec::new(), capacity: 0 }
+        Self::limited(u32::MAX)
+    }
+}
+
+impl<T> DirtyTable<T> {
+    /// A table of so many rows at most.
+    pub fn limited(most_rows: u32) -> Self {
+        Self { rows: Vec::new(), written: Vec::new(), is_written: Vec::new(), capacity: 0, most_rows }
     }
 }
 
@@ -87,7 +96,8 @@ impl<T: Copy + Default> DirtyTable<T> {
         if self.len() <= self.capacity {
             return false;
         }
-        self.capacity = with_reserve(self.len()).max(FIRST_CAPACITY);
+        let wanted = with_reserve(self.len()).max(FIRST_CAPACITY);
+        self.capacity = wanted.min(self.most_rows).max(self.len());
         self.written.clear();
         self.written.extend(0..self.rows.len() as u32);
         self.is_written.fill(true);
@@ -134,6 +144,16 @@ mod tests {
             table.upload(|first, rows| copy[first as usize..][..rows.len()].copy_from_slice(rows));
             assert_eq!(copy[..table.rows().len()], *table.rows(), "round {round}");
             assert!(!table.is_dirty());
+        }
+    }
+
+    #[test]
+    fn the_reserve_ends_where_the_device_cannot_bind_more() {
+        let mut table = DirtyTable::<u32>::limited(1100);
+        for (length, capacity) in [(100, FIRST_CAPACITY), (600, 900), (1000, 1100), (1100, 1100)] {
+            table.grow_to(length);
+            table.grow_capacity();
+            assert_eq!(table.capacity, capacity, "{length}");
         }
     }
 

@@ -5,12 +5,15 @@
 //! every pass. Measured on software Vulkan, 60 trees at 640x400 with four samples: with the whole chain in the vertex
 //! shader no picture was there after two minutes, this way one (of two or three frames) after 19 s.
 
-use crate::render::{
-    buffers::sway_buffers::SwayBuffers,
-    capabilities::can_read_tables,
-    instances::{
-        tag::{ROW_BITS, ROW_BITS_CONSTANT},
-        workgroups::WORKGROUP_SIZE,
+use crate::{
+    dynamics::{frequency_classes::FrequencyClasses, oscillator_grid::row_count},
+    render::{
+        buffers::sway_buffers::SwayBuffers,
+        capabilities::can_read_tables,
+        instances::{
+            tag::{ROW_BITS, ROW_BITS_CONSTANT},
+            workgroups::WORKGROUP_SIZE,
+        },
     },
 };
 use bevy::{
@@ -111,6 +114,7 @@ fn queue_pipelines(mut commands: Commands, assets: Res<AssetServer>, cache: Res<
                 ShaderDefVal::UInt(ROW_BITS_CONSTANT.into(), ROW_BITS),
                 ShaderDefVal::UInt("POSE_WORKGROUP_SIZE".into(), WORKGROUP_SIZE),
                 ShaderDefVal::UInt("POSE_WORKGROUPS_ACROSS".into(), WORKGROUPS_ACROSS),
+                ShaderDefVal::UInt("TABLE_ROWS".into(), row_count(&FrequencyClasses::default()) as u32),
             ],
             entry_point: Some(entry_point.into()),
             ..default()

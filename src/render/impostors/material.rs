@@ -8,6 +8,7 @@ use crate::{
     lod::{ImpostorAtlas, ImpostorFrame, ImpostorSway},
     render::{
         buffers::sway_buffers::SwayBuffers,
+        instances::rows::sway_vectors,
         lighting::{LitAsTrees, TreeLights},
         pipeline::{set_constants, specialize},
         species::tree_material::SeasonUniform,
@@ -77,8 +78,24 @@ struct AtlasUniform {
     blocks: f32,
     first_bare: f32,
     outline_texels: Vec2,
-    /// Gain and class of each variant's [`ImpostorSway`].
-    leans: [Vec4; MAX_VARIANTS as usize],
+    /// How each variant's stem sways.
+    stems: [StemUniform; MAX_VARIANTS as usize],
+}
+
+/// `Stem` of the shader: an [`ImpostorSway`].
+#[derive(ShaderType, Reflect, Clone, Copy, Debug, Default)]
+struct StemUniform {
+    in_leaf: Vec4,
+    bare: Vec4,
+    loads: Vec4,
+    leaf_season: UVec4,
+}
+
+impl From<&ImpostorSway> for StemUniform {
+    fn from(sway: &ImpostorSway) -> Self {
+        let [in_leaf, bare, loads] = sway_vectors(&sway.in_leaf, &sway.bare).map(Vec4::from_array);
+        Self { in_leaf, bare, loads, leaf_season: UVec4::new(sway.leaf_season.bits(), 0, 0, 0) }
+    }
 }
 
 /// An atlas as Bevy images: megabytes, laid out in the background.
@@ -93,14 +110,14 @@ pub(crate) struct AtlasImages {
     across: u32,
     /// Width and height of a view's outline, texels.
     outline_texels: Vec2,
-    /// How each variant leans.
-    leans: Vec<ImpostorSway>,
+    /// How each variant sways.
+    sways: Vec<ImpostorSway>,
     /// The colour of the leaves.
     summer: [f32; 3],
 }
 
 impl AtlasImages {
-    pub fn new(atlas: &ImpostorAtlas, leans: Vec<ImpostorSway>, summer: [f32; 3]) -> Self {
+    pub fn new(atlas: &ImpostorAtlas, sways: Vec<ImpostorSway>, summer: [f32; 3]) -> Self {
         let [colour, surface, outline] = [&atlas.colour, &atlas.surface, &atlas.coverage]
             .map(|texture| image(texture, ImageAddressMode::ClampToEdge, ALL_MIPS));
         Self {
@@ -113,7 +130,7 @@ impl AtlasImages {
             blocks: atlas.view_grids(),
             across: atlas.views_per_side,
             outline_texels: (atlas.tile_texels * atlas.coverage.width / atlas.colour.width).as_vec2(),
-            leans,
+            sways,
             summer,
         }
     }
@@ -152,10 +169,7 @@ pub(crate) fn impostor_material(
                 blocks: atlas.blocks as f32,
                 first_bare: if atlas.has_bare { atlas.variants as f32 } else { 0.0 },
                 outline_texels: atlas.outline_texels,
-                leans: std::array::from_fn(|tree| {
-                    let ImpostorSway { gain, class } = atlas.leans.get(tree).copied().unwrap_or_default();
-                    Vec4::new(gain, class, 0.0, 0.0)
-                }),
+                stems: std::array::from_fn(|tree| atlas.sways.get(tree).map(StemUniform::from).unwrap_or_default()),
             },
             season: SeasonUniform::new(&species.phenology, atlas.summer),
             wind_a: wind_a.clone(),

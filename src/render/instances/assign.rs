@@ -79,7 +79,7 @@ impl Assigner<'_, '_> {
 
     fn allocate_row(&mut self, model: AssetId<TreeModel>) -> Option<u32> {
         if let Some(baked) = self.models.get(model) {
-            self.tables.add_model(model, baked.beams.iter().map(BeamRow::from));
+            self.tables.add_model(model, baked.beams.iter().map(|beam| BeamRow::new(beam, baked.leaf_season)));
         }
         let row = self.tables.allocate_row(model);
         if row.is_none() && self.tables.is_full() && !*self.has_warned {

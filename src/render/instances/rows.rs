@@ -1,6 +1,9 @@
 //! Rows of the GPU tables. `render/shaders/instances.wesl` has the same layouts.
 
-use crate::dynamics::pose::BeamDynamics;
+use crate::{
+    dynamics::beam::{BeamDynamics, BeamSway},
+    tree::LeafSeason,
+};
 use bytemuck::{Pod, Zeroable};
 
 /// `BeamRow` of the shader: one beam of a model.
@@ -11,25 +14,38 @@ pub(crate) struct BeamRow {
     length_m: f32,
     direction: [f32; 3],
     attach: f32,
-    gain: f32,
-    class_coordinate: f32,
+    in_leaf: [f32; 4],
+    bare: [f32; 4],
+    loads: [f32; 4],
     parent: u32,
-    padding: u32,
+    leaf_season: u32,
+    padding: [u32; 2],
 }
 
-impl From<&BeamDynamics> for BeamRow {
-    fn from(beam: &BeamDynamics) -> Self {
+impl BeamRow {
+    /// A beam of a tree that has leaves in that season.
+    pub fn new(beam: &BeamDynamics, leaf_season: LeafSeason) -> Self {
+        let [in_leaf, bare, loads] = sway_vectors(&beam.in_leaf, &beam.bare);
         Self {
             base: beam.base.to_array(),
             length_m: beam.length_m,
             direction: beam.direction.to_array(),
             attach: beam.attach,
-            gain: beam.gain,
-            class_coordinate: beam.class,
+            in_leaf,
+            bare,
+            loads,
             parent: beam.parent,
-            padding: 0,
+            leaf_season: leaf_season.bits(),
+            padding: [0; 2],
         }
     }
+}
+
+/// `LeafySway` of the shader: a sway in leaf and bare.
+pub(crate) fn sway_vectors(in_leaf: &BeamSway, bare: &BeamSway) -> [[f32; 4]; 3] {
+    let vector = |sway: &BeamSway| [sway.gain, sway.class, sway.averaging_speed_m_s, sway.drag_damping_s_m];
+    let loads = [in_leaf.load_height_m, in_leaf.drag_exponent, bare.load_height_m, bare.drag_exponent];
+    [vector(in_leaf), vector(bare), loads]
 }
 
 /// `Frame` of the shader: the values of one frame.
@@ -107,7 +123,7 @@ mod tests {
 
     #[test]
     fn rows_have_the_sizes_of_the_shader() {
-        assert_eq!(size_of::<BeamRow>(), 48);
+        assert_eq!(size_of::<BeamRow>(), 96);
         assert_eq!(size_of::<FrameRow>(), 208);
         assert_eq!(size_of::<TreeRow>(), 64);
     }

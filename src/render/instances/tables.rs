@@ -76,7 +76,7 @@ impl InstanceTables {
     pub fn new(max_poses: u32, max_beams: u32) -> Self {
         Self {
             trees: DirtyTable::default(),
-            beams: DirtyTable::default(),
+            beams: DirtyTable::limited(max_beams),
             workgroups: PoseWorkgroups::default(),
             rows: Vec::new(),
             free_rows: Vec::new(),

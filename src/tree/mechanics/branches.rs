@@ -1,7 +1,7 @@
 //! Cuts a skeleton into branches, each with the lumps of mass and drag that it carries.
 
 use crate::{
-    constants::{AIR_DENSITY_KG_M3, REFERENCE_HEIGHT_M},
+    constants::AIR_DENSITY_KG_M3,
     tree::{
         skeleton::{LeafCluster, Skeleton, SkeletonBeam},
         species::Species,
@@ -12,10 +12,6 @@ use std::f64::consts::PI;
 
 /// Drag coefficient of a round branch across the flow below the drag crisis (Simiu & Scanlan 1978).
 const BRANCH_DRAG_COEFFICIENT: f64 = 1.2;
-/// Roughness length with which heights are weighted, m: open woodland (Simiu & Scanlan 1978 give 0.01 to 1). The model is
-/// baked once for all winds; over the heights of a crown other roughness changes the weights by a few per cent.
-const ROUGHNESS_M: f64 = 0.3;
-
 /// A lump of mass and drag: a piece of the tree, taken together at one point of a branch.
 #[derive(Clone, Copy)]
 pub(super) struct Lump {
@@ -25,18 +21,35 @@ pub(super) struct Lump {
     pub arm_m: f64,
     pub beside_m: f64,
     pub mass_kg: f64,
-    /// Drag for one m^2/s^2 of wind pressure |u|u at the reference height, kg/m.
+    /// Drag for one m^2/s^2 of wind pressure |u|u where it is, kg/m.
     pub drag_kg_m: f64,
+    /// Where it is, in the tree's coordinates, m.
+    pub at: Vec3,
+    /// Whether it is of leaves, which may be shed.
+    pub is_leaf: bool,
+    /// Its number among all lumps of the tree: those of a piece follow one another, from the branch that it is of to the stem.
+    pub slot: u32,
 }
 
 /// A chain of beams, root first, with the lumps of all that it carries.
 pub(super) struct LoadedBranch {
     pub beams: Vec<u32>,
     pub lumps: Vec<Lump>,
+    /// From its root on, at rest.
+    pub direction: Vec3,
+}
+
+/// A tree as branches, and how its pieces hang on them.
+pub(super) struct LoadedTree {
+    pub branches: Vec<LoadedBranch>,
+    /// The branch of each slot of a lump.
+    pub branch_of_slot: Vec<u32>,
+    /// The first slot of each piece, and the number of slots at the end.
+    pub first_slots: Vec<u32>,
 }
 
 /// Cuts the skeleton into branches, and puts every beam and cluster as lumps on all branches that carry it.
-pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> Vec<LoadedBranch> {
+pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> LoadedTree {
     let mut branches: Vec<LoadedBranch> = Vec::new();
     // For each beam its branch, and the length of the branch before it.
     let mut places: Vec<(usize, f64)> = Vec::with_capacity(skeleton.beams.len());
@@ -49,36 +62,44 @@ pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> Vec<LoadedBran
                 (branch, before_m + f64::from(skeleton.beams[parent as usize].length_m))
             }
             None => {
-                branches.push(LoadedBranch { beams: Vec::new(), lumps: Vec::new() });
+                branches.push(LoadedBranch { beams: Vec::new(), lumps: Vec::new(), direction: beam.direction });
                 (branches.len() - 1, 0.0)
             }
         };
         branches[place.0].beams.push(index);
         places.push(place);
     }
-    let put_on = |branches: &mut [LoadedBranch], mut carrier: u32, mut attach: f32, at: Vec3, mass_kg, drag_kg_m| loop {
+    let mut tree = LoadedTree { branches, branch_of_slot: Vec::new(), first_slots: Vec::new() };
+    let put_on = |tree: &mut LoadedTree, mut carrier: u32, mut attach: f32, piece: Piece| loop {
+        let Piece { at, mass_kg, drag_kg_m, is_leaf } = piece;
         let beam = &skeleton.beams[carrier as usize];
         let arm = at - (beam.base + beam.direction * beam.length_m * attach);
         let (branch, before_m) = places[carrier as usize];
         let attach_m = before_m + f64::from(beam.length_m * attach);
         let arm_m = f64::from(arm.dot(beam.direction));
         let beside_m = f64::from(arm.reject_from_normalized(beam.direction).length());
-        branches[branch].lumps.push(Lump { attach_m, arm_m, beside_m, mass_kg, drag_kg_m });
-        let root = &skeleton.beams[branches[branch].beams[0] as usize];
+        let slot = tree.branch_of_slot.len() as u32;
+        tree.branch_of_slot.push(branch as u32);
+        tree.branches[branch].lumps.push(Lump { attach_m, arm_m, beside_m, mass_kg, drag_kg_m, at, is_leaf, slot });
+        let root = &skeleton.beams[tree.branches[branch].beams[0] as usize];
         let Some(parent) = root.parent else { return };
         (carrier, attach) = (parent, root.attach);
     };
     for (index, beam) in (0u32..).zip(&skeleton.beams) {
         for (s, share) in BEAM_LUMPS {
-            let (at, mass_kg, drag_kg_m) = beam_lump(species, beam, s, share);
-            put_on(&mut branches, index, s, at, mass_kg, drag_kg_m);
+            tree.first_slots.push(tree.branch_of_slot.len() as u32);
+            put_on(&mut tree, index, s, wood_piece(species, beam, s, share));
         }
     }
     for cluster in &skeleton.clusters {
-        let (at, mass_kg, drag_kg_m) = cluster_lump(species, cluster);
-        put_on(&mut branches, cluster.beam, cluster.at, at, mass_kg, drag_kg_m);
+        tree.first_slots.push(tree.branch_of_slot.len() as u32);
+        put_on(&mut tree, cluster.beam, cluster.at, leaf_piece(species, cluster));
     }
-    branches
+    tree.first_slots.push(tree.branch_of_slot.len() as u32);
+    for branch in &mut tree.branches {
+        branch.lumps.sort_by(|a, b| a.attach_m.total_cmp(&b.attach_m));
+    }
+    tree
 }
 
 /// A beam's own wood as lumps: place on the beam, and share of its length.
@@ -94,25 +115,30 @@ const BEAM_LUMPS: [(f32, f64); 6] = {
     ]
 };
 
-fn beam_lump(species: &Species, beam: &SkeletonBeam, s: f32, share: f64) -> (Vec3, f64, f64) {
+/// A piece of the tree with its mass, kg, and its drag for one m^2/s^2 of wind pressure, kg/m.
+#[derive(Clone, Copy)]
+struct Piece {
+    at: Vec3,
+    mass_kg: f64,
+    drag_kg_m: f64,
+    is_leaf: bool,
+}
+
+fn wood_piece(species: &Species, beam: &SkeletonBeam, s: f32, share: f64) -> Piece {
     let radius_m = f64::from(beam.radius_m(s));
     let length_m = share * f64::from(beam.length_m);
     let at = beam.base + beam.direction * beam.length_m * s;
     let mass_kg = PI * radius_m * radius_m * length_m * f64::from(species.wood.density_kg_m3);
     let area_m2 = 2.0 * radius_m * length_m;
-    (at, mass_kg, 0.5 * AIR_DENSITY_KG_M3 * BRANCH_DRAG_COEFFICIENT * area_m2 * pressure_ratio(at.y))
+    Piece { at, mass_kg, drag_kg_m: 0.5 * AIR_DENSITY_KG_M3 * BRANCH_DRAG_COEFFICIENT * area_m2, is_leaf: false }
 }
 
-fn cluster_lump(species: &Species, cluster: &LeafCluster) -> (Vec3, f64, f64) {
+fn leaf_piece(species: &Species, cluster: &LeafCluster) -> Piece {
     let area_m2 = f64::from(cluster.size_m * cluster.size_m);
-    let at = cluster.anchor + cluster.axis * cluster.size_m * 0.5;
-    let coefficient = f64::from(species.foliage.drag_coefficient);
-    let drag_kg_m = 0.5 * AIR_DENSITY_KG_M3 * coefficient * area_m2 * pressure_ratio(at.y);
-    (at, area_m2 * f64::from(species.foliage.mass_per_area_kg_m2), drag_kg_m)
-}
-
-/// Wind pressure at a height over that at the reference height: the log law (eq. 10), squared.
-fn pressure_ratio(height_m: f32) -> f64 {
-    let log = |z: f64| (z / ROUGHNESS_M).max(1.0).ln();
-    (log(f64::from(height_m)) / log(f64::from(REFERENCE_HEIGHT_M))).powi(2)
+    Piece {
+        at: cluster.anchor + cluster.axis * cluster.size_m * 0.5,
+        mass_kg: area_m2 * f64::from(species.foliage.mass_per_area_kg_m2),
+        drag_kg_m: 0.5 * AIR_DENSITY_KG_M3 * f64::from(species.foliage.drag_coefficient) * area_m2,
+        is_leaf: true,
+    }
 }

@@ -10,7 +10,10 @@
 //! slope(x) = int_0^x M / E I,    y(x) = int_0^x slope
 //! gain of a beam  = (slope at its tip - slope at its root) under the drag for |u|u = 1 m^2/s^2, over phi_1'(1)
 //! w^2 of a branch = sum m y / sum m (y^2 + (r slope)^2),   y and slope under the forces m in place of the drag
+//! damping by drag = U (1 + V/2) sum c y^2 / (w sum m (y^2 + (r slope)^2)),   c |u| u = drag of a lump
 //! ```
+//!
+//! The third follows from drag by the velocity that a moving lump sees: `c (U - y')^(2 + V)` loses `(2 + V) c U y'`.
 //!
 //! The second is Rayleigh's method with the shape of the static deflection, which takes taper and load as they are: the
 //! generalised mass and stiffness (eqs. 20, 23) of the uniform beam's mode would make a tapering trunk a third too fast.
@@ -26,19 +29,31 @@
 //!   (`sum m y` is twice the elastic energy for forces `m`), with the sine of the beam's elevation: a hanging branch is
 //!   stiffened.
 //!
-//! `branches.rs` cuts the skeleton into branches with their lumps, `response.rs` has the formulas above.
+//! The gains of a branch share a correction, with which its posed beams move its tip as far as the integral above. Where the
+//! drag of a beam is, in height and in spread, is weighed by how much it bends that beam: that decides how much of the mean
+//! wind and of its gusts the beam feels (`dynamics::beam`). All this is worked out twice, with leaves and without.
+//!
+//! For its frequency and damping a branch moves with what it carries, which bends as well: `y` is the motion of a lump under
+//! the forces `m` on the whole of it (`composite.rs`). `branches.rs` cuts the skeleton into branches with their lumps,
+//! `response.rs` has the formulas above for a branch that carries rigid arms.
 
 mod branches;
+mod composite;
 mod response;
 
-use self::branches::branches;
+use self::{
+    branches::{LoadedBranch, LoadedTree, branches},
+    composite::{CompositeSway, composite_sways},
+    response::{BeamLoad, BranchResponse},
+};
 use super::{
     skeleton::{Skeleton, SkeletonBeam},
     species::Species,
 };
 use crate::dynamics::{
+    admittance::equivalent_size_m,
+    beam::{BeamDynamics, BeamSway, NO_PARENT},
     frequency_classes::FrequencyClasses,
-    pose::{BeamDynamics, NO_PARENT},
 };
 
 /// Height at which foresters measure a trunk's diameter, m.
@@ -46,18 +61,55 @@ const BREAST_HEIGHT_M: f32 = 1.3;
 
 /// The beams of `skeleton` as rows for posing, in the same order.
 pub(super) fn beam_dynamics(species: &Species, skeleton: &Skeleton) -> Vec<BeamDynamics> {
-    let classes = FrequencyClasses::default();
     let mut rows: Vec<BeamDynamics> = skeleton.beams.iter().map(at_rest).collect();
-    for branch in branches(species, skeleton) {
-        let beams = branch.beams.clone();
-        let response = branch.response(species, skeleton);
-        for (beam, gain) in beams.into_iter().zip(response.gains) {
-            // Boughs that reach back past their root would bend a beam against the wind: it is kept still instead.
-            rows[beam as usize].gain = gain.max(0.0) as f32;
-            rows[beam as usize].class = classes.coordinate(response.frequency_hz as f32);
-        }
+    let tree = branches(species, skeleton);
+    let has_leaves = !skeleton.clusters.is_empty();
+    let exponents = [species.foliage.drag_exponent, species.wood.drag_exponent];
+    let in_leaf = TreeResponse::new(&tree, &tree.branches, species, skeleton);
+    in_leaf.write(&tree, exponents[usize::from(!has_leaves)], |beam, sway| rows[beam].in_leaf = sway);
+    if has_leaves && !species.phenology.evergreen {
+        let branches: Vec<LoadedBranch> = tree.branches.iter().map(LoadedBranch::without_leaves).collect();
+        let bare = TreeResponse::new(&tree, &branches, species, skeleton);
+        bare.write(&tree, exponents[1], |beam, sway| rows[beam].bare = sway);
+    } else {
+        rows.iter_mut().for_each(|row| row.bare = row.in_leaf);
     }
     rows
+}
+
+/// How all branches of a tree respond, in leaf or bare.
+struct TreeResponse {
+    responses: Vec<BranchResponse>,
+    sways: Vec<CompositeSway>,
+}
+
+impl TreeResponse {
+    fn new(tree: &LoadedTree, branches: &[LoadedBranch], species: &Species, skeleton: &Skeleton) -> Self {
+        let responses: Vec<BranchResponse> = branches.iter().map(|branch| branch.response(species, skeleton)).collect();
+        let sways = composite_sways(tree, branches, &responses);
+        Self { responses, sways }
+    }
+
+    /// Hands out the sway of each beam.
+    fn write(&self, tree: &LoadedTree, drag_exponent: f32, mut write: impl FnMut(usize, BeamSway)) {
+        for ((branch, response), sway) in tree.branches.iter().zip(&self.responses).zip(&self.sways) {
+            for (beam, load) in branch.beams.iter().zip(&response.loads) {
+                write(*beam as usize, beam_sway(load, sway, drag_exponent));
+            }
+        }
+    }
+}
+
+fn beam_sway(load: &BeamLoad, sway: &CompositeSway, drag_exponent: f32) -> BeamSway {
+    let finite = |value: f64| if value.is_finite() { value as f32 } else { 0.0 };
+    BeamSway {
+        gain: finite(load.gain),
+        class: FrequencyClasses::default().coordinate(sway.frequency_hz as f32),
+        averaging_speed_m_s: finite(sway.frequency_hz * equivalent_size_m(load.horizontal_m, load.vertical_m)),
+        drag_damping_s_m: finite(sway.drag_damping_s_m),
+        load_height_m: finite(load.height_m),
+        drag_exponent,
+    }
 }
 
 /// The measures of a tree that foresters take.
@@ -74,11 +126,12 @@ pub struct TreeSway {
 /// First sway frequency and size of a tree; of a shrub those of its first stem.
 #[must_use]
 pub fn tree_sway(species: &Species, skeleton: &Skeleton) -> TreeSway {
-    let trunk = branches(species, skeleton).into_iter().next();
-    let (frequency_hz, dbh_m) = trunk.map_or((0.0, 0.0), |trunk| {
-        let dbh_m = 2.0 * trunk.radius_m(skeleton, BREAST_HEIGHT_M);
-        (trunk.response(species, skeleton).frequency_hz as f32, dbh_m)
-    });
+    let tree = branches(species, skeleton);
+    let in_leaf = TreeResponse::new(&tree, &tree.branches, species, skeleton);
+    let (frequency_hz, dbh_m) = match (tree.branches.first(), in_leaf.sways.first()) {
+        (Some(trunk), Some(sway)) => (sway.frequency_hz as f32, 2.0 * trunk.radius_m(skeleton, BREAST_HEIGHT_M)),
+        _ => (0.0, 0.0),
+    };
     TreeSway { frequency_hz, dbh_m, height_m: skeleton.height_m() }
 }
 
@@ -89,8 +142,8 @@ fn at_rest(beam: &SkeletonBeam) -> BeamDynamics {
         direction: beam.direction,
         attach: beam.attach,
         parent: beam.parent.unwrap_or(NO_PARENT),
-        gain: 0.0,
-        class: 0.0,
+        in_leaf: BeamSway::default(),
+        bare: BeamSway::default(),
     }
 }
 

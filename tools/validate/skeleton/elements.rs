@@ -8,8 +8,8 @@ use crate::frame::{
 use nalgebra::{Vector3, Vector6};
 
 /// Roughness length for which the product weights loads by height, m, and the height at which the weight is 1.
-const ROUGHNESS_M: f64 = 0.3;
-const REFERENCE_HEIGHT_M: f64 = 10.0;
+pub const ROUGHNESS_M: f64 = 0.3;
+pub const REFERENCE_HEIGHT_M: f64 = 10.0;
 
 /// The resonance of a node in a uniform wind.
 pub fn peak(tree: &TreeFrame, node: usize, wind: Vector3<f64>) -> Mode {

@@ -1,10 +1,15 @@
 //! What the product says of a tree.
 
+use super::elements::{REFERENCE_HEIGHT_M, ROUGHNESS_M};
 use crate::frame::of_tree::{Place, vector};
 use bevy::math::{Mat3, Vec3};
 use bevy_windwood::{
-    dynamics::{BeamPose, FrequencyClasses, LoadBasis, LoadBasisKind, SLOPE_TIP, TreePoser},
+    dynamics::{
+        BeamDynamics, BeamPose, BeamSway, BeamWind, DRAG_SPEED_M_S, FrequencyClasses, LoadBasis, LoadBasisKind,
+        MeanWind, OscillatorGrid, SLOPE_TIP, TreeInWind, TreePoser,
+    },
     tree::TreeModel,
+    wind::LogProfile,
 };
 use nalgebra::Vector3;
 
@@ -21,7 +26,7 @@ pub struct Product<'a> {
 impl<'a> Product<'a> {
     pub fn new(model: &'a TreeModel) -> Self {
         let boughs = model.beams.iter().zip(&model.skeleton.beams).filter(|(_, beam)| beam.order <= 1);
-        let greatest_gain = boughs.map(|(beam, _)| beam.gain).fold(f32::MIN_POSITIVE, f32::max);
+        let greatest_gain = boughs.map(|(beam, _)| beam.in_leaf.gain).fold(f32::MIN_POSITIVE, f32::max);
         let pressure = SMALL_ANGLE / (SLOPE_TIP * greatest_gain);
         let poses = [Vec3::X, Vec3::Z].map(|wind| posed(model, pressure * wind));
         Self { model, pressure, poses }
@@ -29,7 +34,7 @@ impl<'a> Product<'a> {
 
     pub fn frequency_hz(&self, beam: usize) -> f64 {
         let classes = FrequencyClasses::default();
-        f64::from(classes.lowest_hz) * f64::from(classes.ratio).powf(f64::from(self.model.beams[beam].class))
+        f64::from(classes.lowest_hz) * f64::from(classes.ratio).powf(f64::from(self.model.beams[beam].in_leaf.class))
     }
 
     /// Where a level wind moves a place, m by m^2/s^2.
@@ -64,7 +69,17 @@ impl<'a> Product<'a> {
 /// The tree in a uniform, steady load: its part across each beam bends it.
 fn posed(model: &TreeModel, pressure: Vec3) -> Vec<BeamPose> {
     let basis = LoadBasis::new(LoadBasisKind::Principal, &[pressure], move |_, _| pressure);
-    let poser = TreePoser::new(&model.beams, basis.map(), &FrequencyClasses::default(), Mat3::IDENTITY, 1.0);
+    // The profile of the finite elements' load, and a drag that grows with the square of the speed.
+    let mean =
+        MeanWind::new(&LogProfile::from_reference(DRAG_SPEED_M_S, ROUGHNESS_M as f32, 0.0), REFERENCE_HEIGHT_M as f32);
+    let quadratic = |beam: &BeamDynamics| {
+        let in_leaf = BeamSway { drag_exponent: 0.0, ..beam.in_leaf };
+        BeamDynamics { in_leaf, bare: in_leaf, ..*beam }
+    };
+    let beams: Vec<BeamDynamics> = model.beams.iter().map(quadratic).collect();
+    let wind = BeamWind { mean, grid: OscillatorGrid::new(FrequencyClasses::default(), 0.05, DRAG_SPEED_M_S, 10.0) };
+    let tree = TreeInWind { map: basis.map(), wind: &wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 };
+    let poser = TreePoser::new(&beams, &tree);
     let mut poses = vec![BeamPose::REST; model.beams.len()];
     poser.pose(&[], &mut poses);
     poses

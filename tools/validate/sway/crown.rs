@@ -40,6 +40,10 @@ pub struct Cell {
 
 impl Crown {
     pub fn of(name: &str, species: &Species, years: f32) -> Self {
+        // Quadratic drag, as the oracle has.
+        let mut species = species.clone();
+        (species.foliage.drag_exponent, species.wood.drag_exponent) = (0.0, 0.0);
+        let species = &species;
         let model = TreeModel::bake(species, years, SWAY_SEED);
         let beams = chain(&model.skeleton, 0);
         let tree = whole(species, &model.skeleton, |_| 1.0);
@@ -55,7 +59,7 @@ impl Crown {
             .filter(|(_, weight)| *weight > 0.0)
             .collect();
         let classes = FrequencyClasses::default();
-        let class = f64::from(model.beams[0].class);
+        let class = f64::from(model.beams[0].in_leaf.class);
         Self {
             name: format!("{name} {years:.0}"),
             height_m: model.height_m(),

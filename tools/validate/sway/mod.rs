@@ -16,7 +16,11 @@ mod wind;
 
 use crate::{report::Report, trees::shipped};
 use bands::{Bands, OCTAVES};
-use bevy_windwood::{sway::SwaySettings, wind::FieldSettings};
+use bevy_windwood::{
+    dynamics::{BeamWind, FrequencyClasses, MeanWind, OscillatorGrid},
+    sway::SwaySettings,
+    wind::{FieldSettings, LogProfile},
+};
 use crown::Crown;
 use oracle::{Oscillator, linear_variances, simulate};
 use rustfft::num_complex::Complex;
@@ -35,8 +39,6 @@ const SWAY_SEED: u64 = 1;
 const LEAST_SHARE: f64 = 0.02;
 /// Factor on the turbulence under which the linear theory is exact.
 const WEAK: f32 = 0.05;
-/// Roughness length with which the product's static loads are weighted by height, m.
-const BAKED_ROUGHNESS_M: f32 = 0.3;
 /// Speed of the steady wind in which both sides bend alike, m/s.
 const STEADY_SPEED_M_S: f32 = 8.0;
 
@@ -98,22 +100,25 @@ fn crowns() -> Result<Vec<Crown>, String> {
     Ok(crowns)
 }
 
-/// The damping ratio of a trunk: the product has one for all.
-fn damping_ratio(_: &Crown) -> f64 {
-    f64::from(SwaySettings::default().damping_ratio)
+/// The damping ratio that the product gives a trunk in a wind.
+fn damping_ratio(crown: &Crown, settings: &FieldSettings) -> f64 {
+    let profile = LogProfile::from_reference(settings.speed, settings.roughness_m, settings.displacement_m);
+    let mean = MeanWind::new(&profile, 10.0);
+    let structure = SwaySettings::default().damping_ratio;
+    let grid = OscillatorGrid::new(FrequencyClasses::default(), structure, mean.speed_m_s, 10.0);
+    f64::from(crown.trunk[0].in_leaf.damping_ratio(&BeamWind { mean, grid }, 1.0))
 }
 
 /// Brings the oracle's deflection, which is that of the trunk at two thirds of its length, to the product's at the tip, in a
-/// steady wind whose profile is the baked one.
+/// steady wind.
 fn oscillators(crowns: &[Crown]) -> Vec<Oscillator> {
-    let steady =
-        FieldSettings { speed: STEADY_SPEED_M_S, roughness_m: BAKED_ROUGHNESS_M, gustiness: 0.0, ..Default::default() };
+    let steady = FieldSettings { speed: STEADY_SPEED_M_S, gustiness: 0.0, ..Default::default() };
     let tips = product::tips(crowns, &product::response(&steady));
     let oscillator = |(crown, tips): (&Crown, &Vec<Vec<_>>)| {
         let ours: Complex<f64> = tips[0][0];
         let theirs: f64 = crown.cells.iter().map(|cell| cell.weight * mean_speed_m_s(&steady, cell.at.y).powi(2)).sum();
         let static_factor = ours.re / theirs;
-        Oscillator { frequency_hz: crown.frequency_hz, damping_ratio: damping_ratio(crown), static_factor }
+        Oscillator { frequency_hz: crown.frequency_hz, damping_ratio: damping_ratio(crown, &steady), static_factor }
     };
     crowns.iter().zip(&tips).map(oscillator).collect()
 }
@@ -131,6 +136,11 @@ struct Comparison {
 
 fn compare(crowns: &[Crown], oscillators: &[Oscillator], settings: &FieldSettings) -> Vec<Comparison> {
     let (ours, means) = product_bands(crowns, settings);
+    let in_wind = |(crown, oscillator): (&Crown, &Oscillator)| Oscillator {
+        damping_ratio: damping_ratio(crown, settings),
+        ..*oscillator
+    };
+    let oscillators: Vec<Oscillator> = crowns.iter().zip(oscillators).map(in_wind).collect();
     let trees: Vec<usize> = (0..crowns.len()).collect();
     let of_tree = |&tree: &usize| {
         let (theirs, mean_m) = simulate(&crowns[tree], &oscillators[tree], settings, 0..SEEDS);

@@ -1,9 +1,9 @@
 //! How the product moves the tip of a trunk.
 
 use super::crown::Crown;
-use bevy::math::{Mat3, Vec3, Vec4};
+use bevy::math::{Mat3, Vec3};
 use bevy_windwood::{
-    dynamics::{BeamPose, SLOPE_TIP, TIP_ANGLE_LIMIT, TreePoser},
+    dynamics::{BeamPose, SLOPE_TIP, TIP_ANGLE_LIMIT, TreeInWind, TreePoser},
     sway::{SwaySettings, WindResponse},
     wind::{FieldSettings, WindField},
 };
@@ -22,18 +22,24 @@ pub fn response(settings: &FieldSettings) -> WindResponse {
 pub fn tips(crowns: &[Crown], response: &WindResponse) -> Vec<Vec<Vec<Complex<f64>>>> {
     let posers: Vec<_> = crowns
         .iter()
-        .map(|crown| TreePoser::new(&crown.trunk, response.basis.map(), &response.table.classes, Mat3::IDENTITY, 1.0))
+        .map(|crown| {
+            let (map, wind) = (response.basis.map(), &response.beam_wind);
+            TreePoser::new(
+                &crown.trunk,
+                &TreeInWind { map, wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 },
+            )
+        })
         .collect();
     let resolution = &response.field.settings().resolution;
     let mut poses = vec![BeamPose::REST; crowns.iter().map(|crown| crown.trunk.len()).max().unwrap_or(0)];
-    let mut responses = vec![Vec4::ZERO; response.table.classes.quasi_static() + 1];
+    let mut responses = Vec::new();
     let mut tips = vec![vec![Vec::with_capacity(resolution.time_samples as usize); COLUMNS.len()]; crowns.len()];
     for (index, column) in COLUMNS.into_iter().enumerate() {
         let stem = Vec3::new(0.0, 0.0, column as f32 * resolution.column_spacing_m);
         for sample in 0..resolution.time_samples {
             let place = response.place(stem, f64::from(sample) * f64::from(resolution.time_step_s));
-            response.table.responses(&place, &mut responses);
             for ((crown, poser), tips) in crowns.iter().zip(&posers).zip(&mut tips) {
+                response.table.responses(&place, poser.rows(), &mut responses);
                 poser.pose(&responses, &mut poses);
                 tips[index].push(free_tip(crown, &poses));
             }

@@ -1,0 +1,147 @@
+//! How fast a branch sways with all that it carries, which bends as well.
+//!
+//! The forces `m` along an axis across the branch bend it and every branch that it carries. A piece moves by the sum over all
+//! branches between it and this one's root,
+//!
+//! ```text
+//! u = sum_k y_k (e - (e . d_k) d_k)          y_k deflection of branch k at the piece, d_k its direction
+//! w^2 = sum m u . e / sum m |u|^2            Rayleigh's method
+//! damping by drag for 1 m/s = sum c |u|^2 / (w sum m |u|^2)
+//! ```
+//!
+//! Without it, a short stem with long boughs would sway three times as fast as it does, since its boughs sway more slowly than
+//! such a stem would under a rigid crown.
+//!
+//! A branch that sways more slowly by itself than the one that carries it does not follow it: it counts as rigid, with its
+//! mass. Which ones these are depends on the frequency that is sought. It is found from below: at first all bend, then those
+//! that are slower than the frequency found are taken out, until none is left. So a few limp twigs do not pass for the tree.
+
+use super::{
+    branches::{LoadedBranch, LoadedTree},
+    response::{BranchResponse, BranchSway},
+};
+use bevy::math::{DVec3, Vec3};
+use std::f64::consts::TAU;
+
+/// A branch's natural frequency, and what drag adds to its damping.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CompositeSway {
+    pub frequency_hz: f64,
+    /// Damping ratio by drag for each m/s of wind, s/m.
+    pub drag_damping_s_m: f64,
+}
+
+/// Sums over the pieces of a branch.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    work: f64,
+    inertia: f64,
+    drag: f64,
+}
+
+/// Rounds in which slow branches are taken out, at most.
+const ROUNDS: usize = 8;
+
+/// The sway of every branch of a tree, given the responses of all, which may lack lumps that are shed.
+pub(super) fn composite_sways(
+    tree: &LoadedTree,
+    branches: &[LoadedBranch],
+    responses: &[BranchResponse],
+) -> Vec<CompositeSway> {
+    let slots = slots(tree, branches, responses);
+    let alone_hz: Vec<f64> =
+        branches.iter().zip(responses).map(|(branch, response)| alone_hz(branch, &response.sway)).collect();
+    let mut sways: Vec<CompositeSway> = Vec::new();
+    for _ in 0..ROUNDS {
+        let bends = |branch: usize, carrier: usize| {
+            branch == carrier || sways.get(carrier).is_none_or(|found| alone_hz[branch] >= found.frequency_hz)
+        };
+        let sums = sums(tree, branches, &slots, bends);
+        let next: Vec<CompositeSway> =
+            sums.iter().zip(responses).map(|(sums, response)| sums.sway(&response.sway)).collect();
+        let is_same = |(a, b): (&CompositeSway, &CompositeSway)| a.frequency_hz.to_bits() == b.frequency_hz.to_bits();
+        let is_settled = sways.len() == next.len() && sways.iter().zip(&next).all(is_same);
+        sways = next;
+        if is_settled {
+            break;
+        }
+    }
+    sways
+}
+
+/// Natural frequency of a branch that carries rigid arms, Hz.
+fn alone_hz(branch: &LoadedBranch, sway: &BranchSway) -> f64 {
+    let sum = |of: fn(f64) -> f64| -> f64 {
+        branch.lumps.iter().zip(&sway.deflections_m).map(|(lump, deflection_m)| lump.mass_kg * of(*deflection_m)).sum()
+    };
+    (sum(|y| y) / sway.softening / (sum(|y| y * y) + sway.turning)).sqrt() / TAU
+}
+
+/// The sums of every branch, over what it carries. `bends` tells whether a branch (first) bends while another sways.
+fn sums(
+    tree: &LoadedTree,
+    branches: &[LoadedBranch],
+    slots: &[Slot],
+    bends: impl Fn(usize, usize) -> bool,
+) -> Vec<Sums> {
+    let directions: Vec<DVec3> = branches.iter().map(|branch| branch.direction.as_dvec3()).collect();
+    let axes: Vec<[DVec3; 2]> = branches.iter().map(|branch| axes_across(branch.direction)).collect();
+    let mut sums = vec![Sums::default(); branches.len()];
+    for ends in tree.first_slots.windows(2) {
+        let (first, end) = (ends[0] as usize, ends[1] as usize);
+        let Slot { mass_kg, drag_kg_m, .. } = slots[first];
+        if mass_kg == 0.0 {
+            continue;
+        }
+        for last in first..end {
+            let carrier = tree.branch_of_slot[last] as usize;
+            for axis in axes[carrier] {
+                let moved = |slot: usize| {
+                    let branch = tree.branch_of_slot[slot] as usize;
+                    let share = if bends(branch, carrier) { slots[slot].deflection_m } else { 0.0 };
+                    share * axis.reject_from(directions[branch])
+                };
+                let moved: DVec3 = (first..=last).map(moved).sum();
+                let sum = &mut sums[carrier];
+                sum.work += mass_kg * moved.dot(axis);
+                sum.inertia += mass_kg * moved.length_squared();
+                sum.drag += drag_kg_m * moved.length_squared();
+            }
+        }
+    }
+    sums
+}
+
+impl Sums {
+    fn sway(self, branch: &BranchSway) -> CompositeSway {
+        // Both axes turn what is beside the branch.
+        let inertia = self.inertia + 2.0 * branch.turning;
+        let omega_rad_s = (self.work / branch.softening / inertia).sqrt();
+        CompositeSway { frequency_hz: omega_rad_s / TAU, drag_damping_s_m: self.drag / (omega_rad_s * inertia) }
+    }
+}
+
+/// What is known of a lump; nothing where it has been shed.
+#[derive(Clone, Copy, Default)]
+struct Slot {
+    deflection_m: f64,
+    mass_kg: f64,
+    drag_kg_m: f64,
+}
+
+fn slots(tree: &LoadedTree, branches: &[LoadedBranch], responses: &[BranchResponse]) -> Vec<Slot> {
+    let mut slots = vec![Slot::default(); tree.branch_of_slot.len()];
+    for (branch, response) in branches.iter().zip(responses) {
+        for (lump, deflection_m) in branch.lumps.iter().zip(&response.sway.deflections_m) {
+            let (mass_kg, drag_kg_m) = (lump.mass_kg, lump.drag_kg_m);
+            slots[lump.slot as usize] = Slot { deflection_m: *deflection_m, mass_kg, drag_kg_m };
+        }
+    }
+    slots
+}
+
+/// Two axes across a branch, at right angles.
+fn axes_across(direction: Vec3) -> [DVec3; 2] {
+    let (first, second) = direction.any_orthonormal_pair();
+    [first.as_dvec3(), second.as_dvec3()]
+}
