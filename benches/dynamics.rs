@@ -31,8 +31,7 @@ fn pose(criterion: &mut Criterion) {
     let basis = basis(&columns);
     let wind = beam_wind();
     let table = ResponseTable::new(&columns, TIME_STEP_S, &basis, wind.grid);
-    let tree_in_wind =
-        TreeInWind { map: basis.map(), wind: &wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 };
+    let tree_in_wind = TreeInWind { map: basis.map(), wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 };
     let beams = tree();
     let mut group = criterion.benchmark_group("pose");
 

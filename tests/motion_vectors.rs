@@ -191,7 +191,7 @@ fn read_motion(
     let Some(motion) = views.iter().find_map(ViewPrepassTextures::motion_vectors_view) else { return };
     let entries = (texture_2d(TextureSampleType::Float { filterable: false }), storage_buffer_sized(false, None));
     pass.run(
-        ProbeShader { entry_point: "read_motion", shader: &probe.shader, defs: Vec::new() },
+        ProbeShader { entry_point: "read_motion", shader: &probe.shader },
         &BindGroupLayoutEntries::sequential(ShaderStages::COMPUTE, entries),
         &BindGroupEntries::sequential((motion, buffer.buffer.as_entire_buffer_binding())),
         [SIZE.div_ceil(8); 2],

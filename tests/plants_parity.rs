@@ -17,7 +17,7 @@ use bevy::{
         renderer::RenderGraph,
         storage::{GpuShaderBuffer, ShaderBuffer},
     },
-    shader::{Shader, ShaderDefVal},
+    shader::Shader,
 };
 use bevy_windwood::{
     grass::{
@@ -153,11 +153,7 @@ fn bend(mut pass: ProbePass, probe: Option<Res<Probe>>, buffers: Res<RenderAsset
     let entries =
         ((0, table()), (1, storage_buffer_sized(false, None)), (103, table()), (105, table()), (106, table()));
     pass.run(
-        ProbeShader {
-            entry_point: "bend",
-            shader: &probe.shader,
-            defs: vec![ShaderDefVal::UInt("MATERIAL_BIND_GROUP".into(), 0)],
-        },
+        ProbeShader { entry_point: "bend", shader: &probe.shader },
         &BindGroupLayoutEntries::with_indices(ShaderStages::COMPUTE, entries),
         &BindGroupEntries::with_indices(((0, a), (1, b), (103, c), (105, d), (106, e))),
         [probe.count.div_ceil(64), 1],

@@ -91,6 +91,17 @@ pub struct BeamAnswer {
     pub read: RowWeights,
 }
 
+/// The mean wind at a beam's load, and what that does to the beam.
+struct LocalWind {
+    /// Mean speed over that of the table's wind.
+    ratio: f32,
+    /// Drag coefficient over that at [`DRAG_SPEED_M_S`]: crowns fold away in the wind.
+    folded: f32,
+    /// Derivative of the load, which grows as `U^(2 + V)`, by that of `U^2`.
+    gusts: f32,
+    damping_ratio: f32,
+}
+
 impl BeamSway {
     /// The answer of a beam of an instance of some scale: that makes a tree sway more slowly and reach higher winds, and
     /// leaves the angles as they are (stiffness grows with its fourth power, as do the load's moments).
@@ -99,10 +110,7 @@ impl BeamSway {
     /// whose strength does not change with height, with `r`: a gust `u'` in a wind `U` adds `2 U u'` to the pressure.
     #[must_use]
     pub fn answer(&self, wind: &BeamWind, scale: f32) -> BeamAnswer {
-        let ratio = wind.mean.ratio(self.load_height_m * scale);
-        let speed_m_s = ratio * wind.mean.speed_m_s;
-        let folded = self.folded_share(speed_m_s);
-        let gusts = self.gust_share(speed_m_s);
+        let LocalWind { ratio, folded, gusts, damping_ratio } = self.local_wind(wind, scale);
         let class = self.class + wind.grid.classes.shift(scale);
         // The grid's sizes are for the table's wind.
         let averaging_speed_m_s = self.averaging_speed_m_s / ratio;
@@ -110,26 +118,24 @@ impl BeamSway {
         BeamAnswer {
             mean_gain: finite(self.gain * folded * ratio * ratio),
             gust_gain: finite(self.gain * gusts * ratio),
-            read: wind.grid.weights(class, averaging_speed_m_s, self.damping_ratio(wind, scale)),
+            read: wind.grid.weights(class, averaging_speed_m_s, damping_ratio),
         }
     }
 
     /// Damping ratio of an instance of some scale in a wind: that of the wood and the roots, and what drag adds.
     #[must_use]
     pub fn damping_ratio(&self, wind: &BeamWind, scale: f32) -> f32 {
-        let speed_m_s = wind.mean.ratio(self.load_height_m * scale) * wind.mean.speed_m_s;
-        wind.grid.damping_ratios[0] + self.gust_share(speed_m_s) * speed_m_s * self.drag_damping_s_m
+        self.local_wind(wind, scale).damping_ratio
     }
 
-    /// Derivative of the load, which grows as `U^(2 + V)`, by that of `U^2`.
-    fn gust_share(&self, speed_m_s: f32) -> f32 {
-        (1.0 + 0.5 * self.drag_exponent) * self.folded_share(speed_m_s)
-    }
-
-    /// Drag coefficient at a speed over that at [`DRAG_SPEED_M_S`]: crowns fold away in the wind.
-    fn folded_share(&self, speed_m_s: f32) -> f32 {
-        let speed_m_s = if speed_m_s > FOLDING_SPEED_M_S { speed_m_s } else { FOLDING_SPEED_M_S };
-        (speed_m_s / DRAG_SPEED_M_S).powf(self.drag_exponent)
+    fn local_wind(&self, wind: &BeamWind, scale: f32) -> LocalWind {
+        let ratio = wind.mean.ratio(self.load_height_m * scale);
+        let speed_m_s = ratio * wind.mean.speed_m_s;
+        let folding_m_s = if speed_m_s > FOLDING_SPEED_M_S { speed_m_s } else { FOLDING_SPEED_M_S };
+        let folded = (folding_m_s / DRAG_SPEED_M_S).powf(self.drag_exponent);
+        let gusts = (1.0 + 0.5 * self.drag_exponent) * folded;
+        let damping_ratio = wind.grid.damping_ratios[0] + gusts * speed_m_s * self.drag_damping_s_m;
+        LocalWind { ratio, folded, gusts, damping_ratio }
     }
 
     /// Tip deflection by length in a steady wind over open country, by its pressure `|u| u` at 10 m, s^2/m^2: for pictures

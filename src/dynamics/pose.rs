@@ -186,7 +186,7 @@ pub struct TreeInWind<'a> {
     /// The load coefficients of all directions.
     pub map: &'a DirectionMap,
     /// The mean wind, and the oscillators of the table.
-    pub wind: &'a BeamWind,
+    pub wind: BeamWind,
     /// Turns the tree's coordinates into the wind's: a rotation, or one with a mirror image before it.
     pub to_wind: Mat3,
     /// Size of the instance.
@@ -210,7 +210,7 @@ impl TreePoser {
         self.beams.extend(beams.iter().enumerate().map(|(index, beam)| {
             let parent = beams[..index].get(beam.parent as usize);
             let coefficients = tree.map.coefficients(tree.to_wind * beam.direction);
-            let answer = beam.sway(tree.leaf_share).answer(tree.wind, tree.scale);
+            let answer = beam.sway(tree.leaf_share).answer(&tree.wind, tree.scale);
             let free_angle = |load: Vec3, gain: f32| {
                 let angle = SLOPE_TIP * gain * (tree.to_wind.transpose() * load);
                 Vec3A::from(if angle.is_finite() { angle } else { Vec3::ZERO })

@@ -103,7 +103,7 @@ impl TreePose {
         for (poser, WeightedResponse { response, .. }) in self.posers.iter_mut().zip(sway.now()) {
             let to_wind = wind_from_world(response) * world_from_local(&stands);
             let scale = stands.affine().matrix3.determinant().abs().cbrt();
-            let (map, wind) = (response.basis.map(), &response.beam_wind);
+            let (map, wind) = (response.basis.map(), response.beam_wind());
             poser.prepare(&model.beams, &TreeInWind { map, wind, to_wind, scale, leaf_share });
         }
         self.made_for = Some(key);

@@ -57,8 +57,8 @@ pub struct WindResponse {
     pub basis: LoadBasis,
     /// The responses of unit oscillators over frequency class, size, damping, column and time.
     pub table: ResponseTable,
-    /// The mean wind and the oscillators, as beams feel them.
-    pub beam_wind: BeamWind,
+    /// The mean wind over height.
+    pub mean_wind: MeanWind,
     /// No beam is pressed harder at any place and time, m²/s²: for [`TreeModel::bounds_under`](crate::tree::TreeModel::bounds_under).
     pub strongest_pressure: f32,
 }
@@ -75,12 +75,17 @@ impl WindResponse {
             })
             .collect();
         let basis = LoadBasis::new(settings.basis, &columns.concat(), cross_flow_pressure);
-        let mean = MeanWind::new(field.profile(), settings.reference_height_m);
+        let mean_wind = MeanWind::new(field.profile(), settings.reference_height_m);
         let decay = field.settings().coherence.along.lateral;
-        let grid = OscillatorGrid::new(FrequencyClasses::default(), settings.damping_ratio, mean.speed_m_s, decay);
+        let grid = OscillatorGrid::new(FrequencyClasses::default(), settings.damping_ratio, mean_wind.speed_m_s, decay);
         let table = ResponseTable::new(&columns, resolution.time_step_s, &basis, grid);
-        let strongest_pressure = most_pressure_share(&mean) * strongest_pressure(&basis, &table);
-        Self { field, basis, table, beam_wind: BeamWind { mean, grid }, strongest_pressure }
+        let strongest_pressure = most_pressure_share(&mean_wind) * strongest_pressure(&basis, &table);
+        Self { field, basis, table, mean_wind, strongest_pressure }
+    }
+
+    /// The wind as beams feel it.
+    pub fn beam_wind(&self) -> BeamWind {
+        BeamWind { mean: self.mean_wind, grid: self.table.grid }
     }
 
     /// Where a tree at `position` stands in the periodic tables at a time: it reads the same wind there as

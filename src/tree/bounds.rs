@@ -69,8 +69,9 @@ impl PressureStep {
 
 /// The box around all that is bound to the beams at each step below the limit, of which the box is known.
 pub(super) fn bounds_by_step(beams: &[BeamDynamics], reaches_m: &[f32], limit: SwayBounds) -> Box<[SwayBounds]> {
+    let gains: Vec<f32> = beams.iter().map(greatest_gain).collect();
     let steps = (0..PressureStep::LIMIT.0).map(PressureStep);
-    steps.map(|step| bounds_under(beams, reaches_m, step.pressure()).intersection(limit)).collect()
+    steps.map(|step| bounds_under(beams, &gains, reaches_m, step.pressure()).intersection(limit)).collect()
 }
 
 /// How far the root of a beam has been moved, m, and turned, rad, at most, about a place of its parent.
@@ -93,12 +94,13 @@ impl Carried {
     }
 }
 
-/// The box around all that is bound to the beams while no load on them is above that pressure, m²/s².
-fn bounds_under(beams: &[BeamDynamics], reaches_m: &[f32], pressure: f32) -> SwayBounds {
+/// The box around all that is bound to the beams while no load on them is above that pressure, m²/s². `gains` are the greatest of
+/// each beam.
+fn bounds_under(beams: &[BeamDynamics], gains: &[f32], reaches_m: &[f32], pressure: f32) -> SwayBounds {
     let mut bounds = SwayBounds::ORIGIN;
     let mut carried: Vec<Carried> = Vec::with_capacity(beams.len());
-    for (beam, reach_m) in beams.iter().zip(reaches_m) {
-        let free_rad = SLOPE_TIP * greatest_gain(beam) * pressure;
+    for ((beam, gain), reach_m) in beams.iter().zip(gains).zip(reaches_m) {
+        let free_rad = SLOPE_TIP * gain * pressure;
         let tip_rad = free_rad.min(TIP_ANGLE_LIMIT);
         let own = match carried.get(beam.parent as usize) {
             Some(parent) => {

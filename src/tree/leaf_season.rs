@@ -2,7 +2,7 @@
 
 use super::phenology::{DROP, Phenology};
 
-/// When a tree has leaves. The same bits are read on the GPU (`leaf_share` of `render/shaders/season.wesl`), so that poses agree there.
+/// When a tree has leaves. The same bits are read on the GPU (`leaf_share` of `render/shaders/beam_sway.wesl`), so that poses agree there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LeafSeason {
     /// When the leaves begin and end to unfold, and to fall, in 255ths of a year, lowest byte first; 0 for an evergreen.

@@ -91,7 +91,7 @@ pub fn cpu_poses(sway: &ActiveSway, model: &TreeModel, tree: &Transform, time_s:
         let to_wind = wind_from_world * Mat3::from_quat(tree.rotation);
         let (map, scale) = (wind.basis.map(), tree.scale.y);
         let poser =
-            TreePoser::new(&model.beams, &TreeInWind { map, wind: &wind.beam_wind, to_wind, scale, leaf_share: 1.0 });
+            TreePoser::new(&model.beams, &TreeInWind { map, wind: wind.beam_wind(), to_wind, scale, leaf_share: 1.0 });
         let mut responses = Vec::new();
         wind.table.responses(&wind.place(tree.translation, time_s), poser.rows(), &mut responses);
         poser.pose(&responses, &mut poses);

@@ -17,7 +17,6 @@ use bevy::{
 pub struct ProbeShader<'a> {
     pub entry_point: &'static str,
     pub shader: &'a Handle<Shader>,
-    pub defs: Vec<ShaderDefVal>,
 }
 
 /// What a system of the render graph needs to run the shader.
@@ -66,7 +65,8 @@ fn queue(cache: &PipelineCache, shader: ProbeShader, layout: &[BindGroupLayoutEn
         label: Some(shader.entry_point.into()),
         layout: vec![layout.clone()],
         shader: shader.shader.clone(),
-        shader_defs: shader.defs,
+        // What the crate's modules bind lies in the only group here.
+        shader_defs: vec![ShaderDefVal::UInt("MATERIAL_BIND_GROUP".into(), 0)],
         entry_point: Some(shader.entry_point.into()),
         ..default()
     });

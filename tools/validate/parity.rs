@@ -181,7 +181,7 @@ fn carry_points(mut pass: ProbePass, probe: Option<Res<Probe>>, buffers: Res<Ren
     let table = || storage_buffer_read_only_sized(false, None);
     let entries = (table(), table(), table(), table(), table(), storage_buffer_sized(false, None));
     pass.run(
-        ProbeShader { entry_point: "carry_points", shader: &probe.shader, defs: Vec::new() },
+        ProbeShader { entry_point: "carry_points", shader: &probe.shader },
         &BindGroupLayoutEntries::sequential(ShaderStages::COMPUTE, entries),
         &BindGroupEntries::sequential((a, b, c, d, e, f)),
         [probe.vertices.div_ceil(64), 1],

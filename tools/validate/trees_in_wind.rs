@@ -120,12 +120,12 @@ impl Tree<'_> {
     }
 
     fn damping(&self, is_in_leaf: bool) -> f64 {
-        f64::from(self.trunk(is_in_leaf).damping_ratio(&self.wind(DAMPING_SPEED_M_S).beam_wind, 1.0))
+        f64::from(self.trunk(is_in_leaf).damping_ratio(&self.wind(DAMPING_SPEED_M_S).beam_wind(), 1.0))
     }
 
     /// Load of the mean wind on the trunk, up to a factor.
     fn load(&self, is_in_leaf: bool, speed_m_s: f32) -> f64 {
-        let answer = self.trunk(is_in_leaf).answer(&self.wind(speed_m_s).beam_wind, 1.0);
+        let answer = self.trunk(is_in_leaf).answer(&self.wind(speed_m_s).beam_wind(), 1.0);
         f64::from(answer.mean_gain) * f64::from(speed_m_s).powi(2)
     }
 
@@ -149,8 +149,8 @@ impl Tree<'_> {
     /// In the mean wind: by how many degrees the tip of the main stem is turned, and how far it is downwind, in heights.
     fn lean(&self, speed_m_s: f32) -> [f64; 2] {
         let wind = self.wind(speed_m_s);
-        let (map, beam_wind) = (wind.basis.map(), &wind.beam_wind);
-        let tree = TreeInWind { map, wind: beam_wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 };
+        let (map, wind) = (wind.basis.map(), wind.beam_wind());
+        let tree = TreeInWind { map, wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 };
         let mut poses = vec![BeamPose::REST; self.model.beams.len()];
         TreePoser::new(&self.model.beams, &tree).pose(&[], &mut poses);
         // The last beam of the stem.

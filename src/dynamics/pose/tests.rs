@@ -18,7 +18,7 @@ fn wind() -> BeamWind {
 }
 
 fn poser(beams: &[BeamDynamics], map: &DirectionMap, to_wind: Mat3, scale: f32) -> TreePoser {
-    TreePoser::new(beams, &TreeInWind { map, wind: &wind(), to_wind, scale, leaf_share: 1.0 })
+    TreePoser::new(beams, &TreeInWind { map, wind: wind(), to_wind, scale, leaf_share: 1.0 })
 }
 
 const BEAM: BeamDynamics = BeamDynamics {
@@ -236,7 +236,7 @@ fn poses_are_finite_for_any_input() {
 fn bare_trees_sway_in_their_own_way() {
     let map = steady_map(1.0);
     let tip = |leaf_share| {
-        let tree = TreeInWind { map: &map, wind: &wind(), to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share };
+        let tree = TreeInWind { map: &map, wind: wind(), to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share };
         let mut poses = [BeamPose::REST];
         TreePoser::new(&[BEAM], &tree).pose(&[], &mut poses);
         poses[0].tip_angle.length()

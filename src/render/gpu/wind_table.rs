@@ -15,7 +15,7 @@ const HEADER: usize = 7;
 /// One wind as the shaders read it, in rows of `vec4`: header, where each class is, direction map, responses, velocities.
 pub(crate) fn pack_wind(wind: &WindResponse) -> Vec<u8> {
     let (frame, table, map) = (wind.field.frame(), &wind.table, wind.basis.map());
-    let BeamWind { mean, grid } = wind.beam_wind;
+    let BeamWind { mean, grid } = wind.beam_wind();
     let [along, across] = [frame.along, frame.across].map(|axis| axis.to_array());
     let lateral = wind.field.lateral();
     let spacing = wind.field.settings().resolution.column_spacing_m;

@@ -19,7 +19,7 @@ use bevy::{
         renderer::RenderGraph,
         storage::{GpuShaderBuffer, ShaderBuffer},
     },
-    shader::{Shader, ShaderDefVal},
+    shader::Shader,
 };
 use bevy_windwood::{dynamics::RestingLeaf, sway::FLUTTER_PERIOD_S};
 use std::{num::NonZeroU64, time::Duration};
@@ -158,11 +158,7 @@ fn turn_leaves(mut pass: ProbePass, probe: Option<Res<Probe>>, buffers: Res<Rend
         (104, uniform_buffer_sized(false, NonZeroU64::new(32))),
     );
     pass.run(
-        ProbeShader {
-            entry_point: "turn_leaves",
-            shader: &probe.shader,
-            defs: vec![ShaderDefVal::UInt("MATERIAL_BIND_GROUP".into(), 0)],
-        },
+        ProbeShader { entry_point: "turn_leaves", shader: &probe.shader },
         &BindGroupLayoutEntries::with_indices(ShaderStages::COMPUTE, entries),
         &BindGroupEntries::with_indices(((0, samples), (1, rotations), (104, response))),
         [probe.count.div_ceil(64), 1],

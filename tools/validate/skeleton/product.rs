@@ -78,7 +78,7 @@ fn posed(model: &TreeModel, pressure: Vec3) -> Vec<BeamPose> {
     };
     let beams: Vec<BeamDynamics> = model.beams.iter().map(quadratic).collect();
     let wind = BeamWind { mean, grid: OscillatorGrid::new(FrequencyClasses::default(), 0.05, DRAG_SPEED_M_S, 10.0) };
-    let tree = TreeInWind { map: basis.map(), wind: &wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 };
+    let tree = TreeInWind { map: basis.map(), wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 };
     let poser = TreePoser::new(&beams, &tree);
     let mut poses = vec![BeamPose::REST; model.beams.len()];
     poser.pose(&[], &mut poses);

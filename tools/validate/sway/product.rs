@@ -23,7 +23,7 @@ pub fn tips(crowns: &[Crown], response: &WindResponse) -> Vec<Vec<Vec<Complex<f6
     let posers: Vec<_> = crowns
         .iter()
         .map(|crown| {
-            let (map, wind) = (response.basis.map(), &response.beam_wind);
+            let (map, wind) = (response.basis.map(), response.beam_wind());
             TreePoser::new(
                 &crown.trunk,
                 &TreeInWind { map, wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 },
