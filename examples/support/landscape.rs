@@ -5,7 +5,7 @@ use bevy_windwood::{
     Ground,
     terrain::{
         CovarianceModel, ElevationGrid, ElevationMap, ElevationScale, Interpolation, Layers, MapPlacement,
-        TurningBands, TurningBandsSettings, chunk::drawn_height_m,
+        SplineGround, SplineGroundSettings, TurningBands, TurningBandsSettings, chunk::drawn_height_m,
     },
 };
 use std::{path::Path, sync::Arc};
@@ -16,6 +16,10 @@ const SHIPPED: &[u8] = include_bytes!("../../assets/terrain/rmnp-dem-16bit.png")
 const SHIPPED_CELL_M: DVec2 = DVec2::new(233.0, 234.0);
 /// Place of the world's origin in the shipped map, as shares of its width and height: a slope by a valley.
 const SHIPPED_PLACE: DVec2 = DVec2::new(0.675, 0.2366);
+/// Ground of five B-spline patches with fifty control points, as Zaharia's.
+const FIVE_PATCHES: &str = include_str!("../../assets/terrain/five_patches.ground.ron");
+/// Corners of the rectangle of its control points: (x, z), m.
+const FIVE_PATCHES_CORNERS_M: [DVec2; 2] = [DVec2::new(-270.0, -120.0), DVec2::new(270.0, 120.0)];
 /// Size of the finest cells of the drawn ground, m.
 pub const FINEST_CELL_M: f32 = 2.0;
 
@@ -49,6 +53,13 @@ impl Landscape {
         let map = ElevationMap::new(grid, placement).map_err(|error| format!("{name}: {error}"))?;
         let layers: [Arc<dyn Ground>; 3] = [Arc::new(map), hills(0.22 * cell.x)?, bumps()?];
         Ok(Self { ground: Arc::new(Layers(layers.into())), corners_m: [corner_m, corner_m + size_m] })
+    }
+
+    /// The shipped ground of B-spline patches.
+    pub fn five_patches() -> Result<Self, String> {
+        let ground = SplineGroundSettings::from_ron(FIVE_PATCHES).and_then(|settings| SplineGround::new(&settings));
+        let ground = ground.map_err(|error| format!("the shipped patches: {error}"))?;
+        Ok(Self { ground: Arc::new(ground), corners_m: FIVE_PATCHES_CORNERS_M })
     }
 
     /// Height of the drawn ground at a place, m.

@@ -13,7 +13,7 @@ mod support;
 mod window;
 
 use clap::Parser;
-use options::Options;
+use options::{Options, View};
 use scene::TerrainScene;
 use std::process::ExitCode;
 use support::landscape::Landscape;
@@ -21,7 +21,11 @@ use support::landscape::Landscape;
 fn main() -> ExitCode {
     let mut options = Options::parse();
     options.scene.image.choose_pictures_without_display(&options.scene.series.out);
-    match Landscape::load(None, 0.0) {
+    let landscape = match options.view {
+        View::Patches => Landscape::five_patches(),
+        View::Valley | View::Summit | View::Aerial => Landscape::load(None, 0.0),
+    };
+    match landscape {
         Ok(landscape) => support::scene::run(TerrainScene { options, landscape }),
         Err(error) => support::start::exit_code(Err(format!("cannot use the ground: {error}"))),
     }

@@ -25,6 +25,18 @@ pub struct Options {
     pub scene: SceneOptions,
 }
 
+impl Options {
+    /// Whether woods grow on the ground: the plan is that of the range.
+    pub fn has_woods(&self) -> bool {
+        self.view != View::Patches
+    }
+
+    /// Whether their trees are drawn.
+    pub fn has_trees(&self) -> bool {
+        self.has_woods() && !self.no_trees
+    }
+}
+
 /// A place to look from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum View {
@@ -34,4 +46,6 @@ pub enum View {
     Summit,
     /// From the air.
     Aerial,
+    /// Zaharia's ground instead of the range: five patches of a B-spline, without trees.
+    Patches,
 }

@@ -45,6 +45,7 @@ impl Scene for TerrainScene {
             View::Valley => "terrain_valley",
             View::Summit => "terrain_summit",
             View::Aerial => "terrain_aerial",
+            View::Patches => "terrain_patches",
         }
     }
 
@@ -54,6 +55,7 @@ impl Scene for TerrainScene {
             View::Valley => (above(300.0, 556.0, 2.2), above(225.0, 450.0, 11.0)),
             View::Summit => (above(2300.0, 21_300.0, 6.0), above(1000.0, 22_900.0, -60.0)),
             View::Aerial => (above(5200.0, 17_500.0, 900.0), above(1180.0, 22_700.0, -500.0)),
+            View::Patches => (above(-250.0, 230.0, 42.0), above(30.0, 0.0, -12.0)),
         };
         Transform::from_translation(eye).looking_at(target, Vec3::Y)
     }
@@ -95,7 +97,7 @@ fn spawn_scene(
     // Pictures wait for the ground. A window must not.
     let (builds_at_once, chunks_per_frame) = if headless { (64, 64) } else { (8, 4) };
     commands.spawn((
-        Terrain { ground: landscape.ground.clone(), cover: cover(landscape) },
+        Terrain { ground: landscape.ground.clone(), cover: options.has_woods().then(|| cover(landscape)).flatten() },
         TerrainSettings {
             finest_cell_m: FINEST_CELL_M,
             reach_m: 40_000.0,
@@ -106,11 +108,11 @@ fn spawn_scene(
         GroundLook {
             grass_line_m: 3450.0,
             snow_line_m: 4050.0,
-            canopy_from_m: if options.no_trees { 0.0 } else { forest.far_to_m.max(forest.trees_to_m) },
+            canopy_from_m: if options.has_trees() { forest.far_to_m.max(forest.trees_to_m) } else { 0.0 },
             ..default()
         },
     ));
-    if !options.no_trees {
+    if options.has_trees() {
         commands.spawn((Forest::new(assets.load(PLAN)), forest));
     }
     let [from, to] = landscape.corners_m.map(DVec2::as_vec2);

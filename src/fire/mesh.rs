@@ -1,7 +1,7 @@
-//! The mesh of a fire: strips for the tongues, the bed of embers, the sparks, and the glow around all.
+//! The mesh of a fire: strips for the rhombs, the sparks, and the glow around all.
 //!
-//! The vertex shader turns tongues to face the camera: a rhomb seen from its edge would be invisible. The bases of copies,
-//! which float in the air and are seen from their edge, are left out.
+//! The vertex shader turns tongues to face the camera: a rhomb seen from its edge would be invisible. Bases lie level, the
+//! first as the bed of embers, those of copies where flames rise from their tongues.
 
 use super::{
     components::Flames,
@@ -27,6 +27,7 @@ const BED: f32 = 0.0;
 const TONGUE: f32 = 1.0;
 const SPARK: f32 = 2.0;
 const GLOW: f32 = 3.0;
+const BASE: f32 = 4.0;
 
 /// Rows of a strip: enough for a tongue to curve.
 const ROWS: u32 = 5;
@@ -73,9 +74,10 @@ pub(super) fn fire_mesh(flames: &Flames) -> Mesh {
             RhombKind::Tongue => rhomb.along.length() / (shape.size_m * shape.tongue_length),
         };
         match rhomb.kind {
-            RhombKind::Base if rhomb.order > 0 => {}
             RhombKind::Base => {
-                strips.add(rhomb.start, rhomb.along, half_width(rhomb), [BED, random.random(), share, 0.0]);
+                let kind = if rhomb.order == 0 { BED } else { BASE };
+                let own = [kind, random.random(), share, rhomb.order as f32];
+                strips.add(rhomb.start, rhomb.along, half_width(rhomb), own);
             }
             RhombKind::Tongue => {
                 let own = [TONGUE, random.random(), share, rhomb.order as f32];
@@ -104,4 +106,50 @@ pub(super) fn fire_mesh(flames: &Flames) -> Mesh {
 pub(super) fn bounds(flames: &Flames) -> Aabb {
     let reach = REACH * flames.height_m.max(flames.fire.shape.size_m);
     Aabb::from_min_max(Vec3::new(-reach, -0.5 * reach, -reach), Vec3::splat(reach))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fire::{Fire, FireLook, FireShape};
+    use bevy::mesh::VertexAttributeValues;
+
+    fn flames(look: FireLook) -> Flames {
+        Flames::from(&Fire { shape: FireShape { seed: 5, ..FireShape::default() }, look })
+    }
+
+    /// How many strips there are of each kind.
+    fn strips(mesh: &Mesh) -> [usize; 5] {
+        let Some(VertexAttributeValues::Float32x4(own)) = mesh.attribute(ATTRIBUTE_FLAME_OWN) else {
+            panic!("four floats for each vertex")
+        };
+        let mut counts = [0; 5];
+        own.iter().step_by(2 * ROWS as usize).for_each(|own| counts[own[0] as usize] += 1);
+        counts
+    }
+
+    #[test]
+    fn every_rhomb_is_drawn_the_bases_of_copies_among_them() {
+        let flames = flames(FireLook { embers: 7, glow: 0.2, ..FireLook::default() });
+        let seeds = flames.rhombs.len() / 4;
+        let [bed, tongues, sparks, glow, bases] = strips(&fire_mesh(&flames));
+        assert_eq!([bed, tongues, bases], [1, 3 * seeds, seeds - 1]);
+        assert_eq!([sparks, glow], [7, 1]);
+    }
+
+    #[test]
+    fn a_base_is_a_level_strip_of_its_own_size() {
+        let flames = flames(FireLook { embers: 0, glow: 0.0, ..FireLook::default() });
+        let mesh = fire_mesh(&flames);
+        let Some(VertexAttributeValues::Float32x4(drawn)) = mesh.attribute(ATTRIBUTE_FLAME) else {
+            panic!("four floats for each vertex")
+        };
+        let stride = 2 * ROWS as usize;
+        assert_eq!(drawn.len(), stride * flames.rhombs.len());
+        for (rhomb, flame) in flames.rhombs.iter().zip(drawn.iter().step_by(stride)) {
+            assert_eq!(Vec3::from_slice(flame), rhomb.along);
+            assert_eq!(flame[3], 0.5 * rhomb.across.length());
+            assert_eq!(rhomb.kind == RhombKind::Base, flame[1] == 0.0);
+        }
+    }
 }

@@ -8,15 +8,18 @@
 //! ```
 //!
 //! Along the longest diagonal of each tongue, at 0.15, 0.33, 0.66 and 1, stand copies of the seed, scaled by 0.6, 0.6, 0.5
-//! and 0.2; copies of these on their tongues, until a copy would be smaller than the threshold. Copies stand upright as the
-//! first seed does. The number of rhombs N of a seed of size x follows from that alone:
+//! and 0.2; copies of these on their tongues, until a copy would be smaller than the threshold. A copy is all of the seed:
+//! its base, too, is kept and drawn, for the paper's cost of a seed is that of "the polygons forming the current seed", "the
+//! basic rhomb" among them. A copy has a position and a scale, and no rotation: its base is parallel to the fire's base
+//! plane, its centre on the tongue that bears it. The number of rhombs N of a seed of size x follows from that alone:
 //!
 //! ```text
 //! N(x) = 4 + 3 (2 N(0.6 x) + N(0.5 x) + N(0.2 x)),   N(x) = 0 below the threshold
 //! ```
 //!
 //! The paper does not give the threshold. With 2 in the unit of its `axa`, N is proportional to the times of its table 1 to
-//! 10%, all eight of them; the aspect ratio (`cf01`) does not enter, as there.
+//! 10%, all eight of them; the aspect ratio (`cf01`) does not enter, as there. (The table does not tell whether the bases of
+//! copies are drawn: without them it is (3 N + 4) / 4 rhombs, as proportional to his times as N is.)
 
 use super::settings::FireShape;
 use bevy::math::Vec3;
@@ -156,6 +159,29 @@ mod tests {
             let expected = if rhomb.kind == RhombKind::Tongue { 60.0 } else { 0.0 };
             assert!((elevation - expected).abs() < 1e-3, "{elevation}");
             assert!(rhomb.across.y == 0.0 && rhomb.across.dot(rhomb.along).abs() < 1e-5);
+        }
+    }
+
+    /// A copy is all of the seed: a base and three tongues, and its base is the first one, smaller and elsewhere.
+    #[test]
+    fn every_copy_has_its_base_parallel_to_the_first_and_three_tongues_on_its_centre() {
+        let rhombs = grow_rhombs(&shape());
+        let [first, ..] = rhombs[..] else { panic!("a fire has rhombs") };
+        let bases: Vec<&Rhomb> = rhombs.iter().filter(|rhomb| rhomb.kind == RhombKind::Base).collect();
+        assert!(bases.len() > 100 && 4 * bases.len() == rhombs.len(), "{} of {}", bases.len(), rhombs.len());
+        for base in bases {
+            let scale = base.along.length() / first.along.length();
+            assert!(base.along.abs_diff_eq(first.along * scale, 1e-6), "{base:?}");
+            assert!(base.across.abs_diff_eq(first.across * scale, 1e-6), "{base:?}");
+            let centre = base.start + 0.5 * base.along;
+            let stands = |rhomb: &&Rhomb| {
+                let length = rhomb.along.length() / (shape().tongue_length * first.along.length());
+                rhomb.kind == RhombKind::Tongue
+                    && rhomb.order == base.order
+                    && (length - scale).abs() < 1e-5
+                    && rhomb.start.abs_diff_eq(centre, 1e-5)
+            };
+            assert!(rhombs.iter().filter(stands).count() >= 3, "{base:?}");
         }
     }
 

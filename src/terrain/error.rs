@@ -1,11 +1,14 @@
 //! What can be wrong with terrain: its settings, its maps, its files.
 
-use crate::setting::SettingError;
+use crate::{ron_text::SyntaxError, setting::SettingError};
 use thiserror::Error;
 
 /// Why a terrain, a map or an estimate was refused.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum TerrainError {
+    /// The text is not the RON of the settings.
+    #[error(transparent)]
+    Syntax(#[from] SyntaxError),
     /// A setting, named by its path such as `patches[0].columns`, is outside its domain.
     #[error(transparent)]
     Setting(#[from] SettingError),

@@ -8,11 +8,14 @@
 //!
 //! All patches take their control points from one lattice, and what no patch covers has the base's elevation. So the
 //! surface is one spline, whatever the patches: it and its gradient are continuous everywhere, also where patches meet
-//! and where they end. (Zaharia enters 50 points for 5 adjacent patches; here they are as many as wanted.) A control
-//! point draws the surface towards itself, which reaches it only where its neighbours agree with it.
+//! and where they end; the second derivatives are constant between the lines halfway between control points, and jump
+//! there. A control point draws the surface towards itself, which reaches it only where its neighbours agree with it.
+//!
+//! Zaharia enters 50 points for 5 adjacent patches; here they are as many as wanted.
+//! `assets/terrain/five_patches.ground.ron` has as many as he.
 
 use super::{error::TerrainError, place::finite};
-use crate::{ground::Ground, setting::require};
+use crate::{ground::Ground, ron_text::from_ron, setting::require};
 use bevy::{math::DVec2, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
@@ -79,6 +82,17 @@ impl Default for SplineGroundSettings {
 }
 
 impl SplineGroundSettings {
+    /// Reads and checks settings that are written in RON.
+    ///
+    /// # Errors
+    /// [`TerrainError::Syntax`] with line and column where `text` is no RON of a surface, and those of
+    /// [`validate`](Self::validate).
+    pub fn from_ron(text: &str) -> Result<Self, TerrainError> {
+        let settings: Self = from_ron(text)?;
+        settings.validate()?;
+        Ok(settings)
+    }
+
     /// Checks every setting.
     ///
     /// # Errors

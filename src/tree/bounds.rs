@@ -10,7 +10,7 @@
 use super::vertices::{LeafVertices, WoodVertices};
 use crate::dynamics::{
     beam::BeamDynamics,
-    pose::{BeamPose, SLOPE_TIP, TIP_ANGLE_LIMIT, TreePoser, mode_shape},
+    pose::{BeamPose, SLOPE_TIP, TreePoser, mode_shape},
 };
 use bevy::math::Vec3;
 
@@ -101,7 +101,7 @@ fn bounds_under(beams: &[BeamDynamics], gains: &[f32], reaches_m: &[f32], pressu
     let mut carried: Vec<Carried> = Vec::with_capacity(beams.len());
     for ((beam, gain), reach_m) in beams.iter().zip(gains).zip(reaches_m) {
         let free_rad = SLOPE_TIP * gain * pressure;
-        let tip_rad = free_rad.min(TIP_ANGLE_LIMIT);
+        let tip_rad = free_rad.min(beam.angle_limit_rad);
         let own = match carried.get(beam.parent as usize) {
             Some(parent) => {
                 let (about, moved_m, turned_rad) = parent.at(&beams[beam.parent as usize], beam.attach);

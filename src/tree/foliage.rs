@@ -1,18 +1,13 @@
-//! Foliage: where the sprays of leaves sit and how they lie.
+//! Foliage: the settings of where the sprays of leaves sit and how they lie. `leaf_places.rs` places them.
 //!
 //! A spray is a stretch of twig with its leaves, one card to draw. Sprays sit along the thin branches and close each
 //! branch's tip, face the sky and the way out of the crown as leaves do, and know how deep in the crown they are:
 //! Reeves & Blau (1985, section 4) shade a tree by that depth.
 
-use bevy::{math::Vec3, reflect::Reflect};
-use rand::{Rng, RngExt};
+use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
 
-use super::{
-    growth::{envelope::Envelope, grower::leave},
-    leaf::{Leaf, LeafArrangement},
-    skeleton::{LeafCluster, SkeletonBeam, continuations},
-};
+use super::leaf::{Leaf, LeafArrangement, LeafKind};
 use crate::{
     dynamics::leaf::LeafResponse,
     setting::{SettingError, require},
@@ -51,6 +46,10 @@ impl Card {
 #[derive(Clone, Debug, PartialEq, Reflect, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Foliage {
+    /// What leaves are drawn as. [Ellipsoids](LeafKind::Ellipsoids) sit on branches that bear no others, by numbers of their own
+    /// instead of `first_order`, `spacing_m`, `size_spread` and `arrangement`; what follows about cards and the `leaf` does
+    /// not concern them.
+    pub kind: LeafKind,
     /// First order of branches that carries leaves along it (lower ones do at their tips), 0 to 5.
     pub first_order: u8,
     /// Where on such a branch the first spray sits, as a share of its first beam: 0 to 1.
@@ -105,6 +104,7 @@ impl Default for Foliage {
     /// A pedunculate oak's.
     fn default() -> Self {
         Self {
+            kind: LeafKind::Sprays,
             first_order: 2,
             first_at: 0.25,
             spacing_m: 0.4,
@@ -154,6 +154,9 @@ impl Foliage {
         require("drag_coefficient", self.drag_coefficient, 0.0..=2.0)?;
         require("drag_exponent", self.drag_exponent, -1.0..=0.0)?;
         self.response.validate().map_err(|error| error.inside("response"))?;
+        if let LeafKind::Ellipsoids(ellipsoids) = &self.kind {
+            ellipsoids.validate().map_err(|error| error.inside("kind"))?;
+        }
         self.leaf.validate().map_err(|error| error.inside("leaf"))
     }
 
@@ -162,104 +165,4 @@ impl Foliage {
     pub fn light(&self, depth: f32) -> f32 {
         (-self.extinction * depth).exp()
     }
-}
-
-/// Places sprays on all beams that carry leaves.
-pub(super) fn place_foliage(
-    foliage: &Foliage,
-    beams: &[SkeletonBeam],
-    envelope: &Envelope,
-    random: &mut impl Rng,
-) -> Vec<LeafCluster> {
-    let mut clusters = Vec::new();
-    let mut tones = vec![0.0; beams.len()];
-    let continuations = continuations(beams);
-    for (index, beam) in beams.iter().enumerate() {
-        // A branch has a tone of its own, close to that of the branch it grows on.
-        let own_tone: f32 = random.random();
-        tones[index] = beam.parent.map_or(0.5, |parent| 0.6 * tones[parent as usize] + 0.4 * own_tone);
-        let continues = beam.attach >= 1.0 && beam.parent.is_some_and(|p| beams[p as usize].order == beam.order);
-        let first_at = match (beam.order < foliage.first_order, continues) {
-            (true, _) => 1.0,
-            (false, true) => 0.0,
-            (false, false) => foliage.first_at,
-        };
-        let twig = Twig { foliage, beam, index: index as u32, envelope, tone: tones[index] };
-        twig.place_sprays(first_at, continuations[index].is_none(), &mut clusters, random);
-        if clusters.len() >= CLUSTERS_LIMIT {
-            clusters.truncate(CLUSTERS_LIMIT);
-            break;
-        }
-    }
-    clusters
-}
-
-struct Twig<'a> {
-    foliage: &'a Foliage,
-    beam: &'a SkeletonBeam,
-    index: u32,
-    envelope: &'a Envelope,
-    tone: f32,
-}
-
-impl Twig<'_> {
-    fn place_sprays(&self, first_at: f32, ends: bool, clusters: &mut Vec<LeafCluster>, random: &mut impl Rng) {
-        let spacing = self.foliage.spacing_m / self.beam.length_m;
-        let mut roll = if random.random::<bool>() { 0.0 } else { self.foliage.roll_deg.to_radians() };
-        let mut at = first_at + 0.5 * spacing * random.random::<f32>();
-        let around = match self.foliage.arrangement {
-            LeafArrangement::Alternate => 1,
-            LeafArrangement::Opposite => 2,
-            LeafArrangement::Whorled => 3,
-        };
-        let spread = self.foliage.roll_spread_deg.to_radians();
-        while at < 1.0 && clusters.len() < CLUSTERS_LIMIT {
-            for place in 0..around {
-                let evenly = std::f32::consts::TAU * place as f32 / around as f32;
-                let turn = roll + evenly + spread * random.random_range(-1.0..1.0);
-                clusters.push(self.spray(at, self.foliage.angle_deg.to_radians(), turn, random));
-            }
-            roll += self.foliage.roll_deg.to_radians();
-            at += spacing * random.random_range(0.7..1.3);
-        }
-        if ends {
-            clusters.push(self.spray(1.0, 0.0, 0.0, random));
-        }
-    }
-
-    /// Sprays are smaller where the crown is narrow, so that a fir comes to a point.
-    fn size_m(&self, anchor: Vec3) -> f32 {
-        let size_m = self.foliage.size_m;
-        size_m.min(LEAST_SIZE_SHARE * size_m + 0.7 * self.envelope.girth_m(anchor.y))
-    }
-
-    fn spray(&self, at: f32, angle_rad: f32, roll_rad: f32, random: &mut impl Rng) -> LeafCluster {
-        let anchor = self.beam.path(at);
-        let outward = self.envelope.outward(anchor);
-        let axis = leave(self.beam.tangent(at), angle_rad, roll_rad) - Vec3::Y * self.foliage.droop;
-        let axis = axis.try_normalize().unwrap_or(self.beam.direction);
-        let face = outward.lerp(Vec3::Y, self.foliage.skyward) + unit(random) * self.foliage.disorder;
-        LeafCluster {
-            beam: self.index,
-            at,
-            anchor,
-            axis,
-            normal: face.reject_from_normalized(axis).try_normalize().unwrap_or(axis.any_orthonormal_vector()),
-            size_m: self.size_m(anchor) * (1.0 + self.foliage.size_spread * random.random_range(-1.0..1.0)),
-            phase: random.random(),
-            depth: self.envelope.depth(anchor),
-            tint: 0.6 * self.tone + 0.4 * random.random::<f32>(),
-        }
-    }
-}
-
-/// A spray keeps this share of its size where the crown is narrowest.
-const LEAST_SIZE_SHARE: f32 = 0.4;
-
-/// Uniform on the unit sphere (Archimedes).
-fn unit(random: &mut impl Rng) -> Vec3 {
-    let height: f32 = random.random_range(-1.0..1.0);
-    let heading = random.random_range(0.0..std::f32::consts::TAU);
-    let radius = (1.0 - height * height).sqrt();
-    Vec3::new(radius * heading.cos(), height, radius * heading.sin())
 }

@@ -3,9 +3,10 @@
 use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
 
 use super::{
-    foliage::{Foliage, place_foliage},
+    foliage::Foliage,
     generator::Grown,
     growth::{age::Stage, grower::GrownBranches, pipes},
+    leaf_places::place_foliage,
     skeleton::{Skeleton, SkeletonBeam},
     species::Species,
 };
@@ -30,7 +31,9 @@ pub fn grow(species: &Species, age_years: f32, seed: u64) -> Skeleton {
 /// Places the foliage on the branches, and finds from both how thick the branches are.
 fn with_foliage(species: &Species, stage: &Stage, branches: GrownBranches, random: &mut impl Rng) -> Skeleton {
     let GrownBranches { mut beams, envelope, trunk_radius_m } = branches;
-    let clusters = place_foliage(&foliage_of_age(&species.foliage, &beams), &beams, &envelope, random);
+    let mut clusters = place_foliage(&foliage_of_age(&species.foliage, &beams), &beams, &envelope, random);
+    // Outer sprays hide inner ones from wherever one looks: drawn first, they save what is behind them.
+    clusters.sort_by(|a, b| a.depth.total_cmp(&b.depth));
     if let Some(exponent) = species.growth.pipe_exponent() {
         pipes::assign_radii(&mut beams, &clusters, trunk_radius_m, exponent);
     }

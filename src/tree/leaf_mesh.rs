@@ -1,4 +1,4 @@
-//! The surface of the foliage: a card for each spray.
+//! The surface of the foliage: a card for each spray, or an ellipsoid for each leaf.
 //!
 //! A card is a kite, root, left, tip and right, folded along its axis: two triangles that show two brightnesses and no
 //! edge-on line. A bent card has a fifth vertex in its middle, crossed cards are two kites ([`Card`]). The texture lies
@@ -7,12 +7,14 @@
 //! light then models the crown's billows and not the single cards. They are meant to be drawn without flipping on
 //! the back side, for a leaf seen from behind is lit by the same sky.
 
-use bevy::math::Vec3;
+use bevy::math::{Mat3, Quat, Vec3};
 
 use super::{
     crown::{gardner, impressionist},
+    ellipsoid::Ellipsoid,
     foliage::{Card, Foliage},
     generator::Growth,
+    leaf::{LeafEllipsoids, LeafKind},
     skeleton::{LeafCluster, Skeleton},
     species::Species,
     vertices::LeafVertices,
@@ -33,20 +35,46 @@ pub fn leaves(species: &Species, skeleton: &Skeleton) -> LeafVertices {
     match &species.growth {
         Growth::Impressionist(crown) => impressionist::leaves(crown, skeleton),
         Growth::Gardner(crown) => gardner::leaves(crown, skeleton),
-        Growth::ReevesBlau(_) | Growth::Oak(_) | Growth::Fir(_) | Growth::AonoKunii(_) => cards(species, skeleton),
+        Growth::ReevesBlau(_) | Growth::Oak(_) | Growth::Fir(_) | Growth::AonoKunii(_) => match &species.foliage.kind {
+            LeafKind::Sprays => cards(&species.foliage, skeleton),
+            LeafKind::Ellipsoids(leaves) => ellipsoids(&species.foliage, leaves, skeleton),
+        },
     }
 }
 
+/// Builds the ellipsoids of all leaves. Their normals are their own: the mask's edge follows from them.
+fn ellipsoids(foliage: &Foliage, leaves: &LeafEllipsoids, skeleton: &Skeleton) -> LeafVertices {
+    let facets = leaves.surface.facets;
+    let mut out = LeafVertices::with_capacity(skeleton.clusters.len() * (2 * facets as usize + 1).pow(2));
+    let clumps = Clumps::of(skeleton);
+    for cluster in &skeleton.clusters {
+        let outward = skeleton.envelope.outward(cluster.anchor);
+        let light = clumps.light(foliage, cluster, outward);
+        let semi_axes = leaves.semi_axes_of(cluster.phase);
+        let [length, width, thickness] = (semi_axes * (0.5 * cluster.size_m / semi_axes.x)).to_array();
+        // The corners of an octahedron are at the ends of the axes: it turns onto itself, in one of four ways.
+        let turns = (4.0 * cluster.tint.fract()) as u32;
+        let half_turns = [turns & 1, turns >> 1].map(|turn| std::f32::consts::PI * turn as f32);
+        let ellipsoid = Ellipsoid {
+            centre: cluster.anchor + cluster.axis * (0.5 * cluster.size_m),
+            axes: Mat3::from_cols(cluster.axis, cluster.normal, cluster.axis.cross(cluster.normal)),
+            semi_axes_m: Vec3::new(length, thickness, width),
+            turn: Quat::from_rotation_y(half_turns[0]) * Quat::from_rotation_x(half_turns[1]),
+            facets,
+        };
+        ellipsoid.write(cluster, |_, _| light, &mut out);
+    }
+    out
+}
+
 /// Builds the cards of all sprays.
-fn cards(species: &Species, skeleton: &Skeleton) -> LeafVertices {
-    let foliage = &species.foliage;
+fn cards(foliage: &Foliage, skeleton: &Skeleton) -> LeafVertices {
     let mut out = LeafVertices::with_capacity(skeleton.clusters.len() * foliage.card.vertices());
     let clumps = Clumps::of(skeleton);
     for cluster in &skeleton.clusters {
         let outward = skeleton.envelope.outward(cluster.anchor);
         let from_clump = clumps.outward(cluster);
-        let lit = 0.5 + 0.5 * from_clump.dot((outward + Vec3::Y).normalize_or(Vec3::Y));
-        let light = foliage.light(cluster.depth) * (CLUMP_SHADE + (1.0 - CLUMP_SHADE) * lit.clamp(0.0, 1.0));
+        let light = clumps.light(foliage, cluster, outward);
         let [own, clump, crown] = NORMAL_SHARES;
         let bent = from_clump * clump + outward * crown;
         let kite = Kite::of(foliage, cluster);
@@ -169,6 +197,12 @@ impl Clumps {
         }
         let middle = sums.into_iter().map(|(sum, count)| sum / count.max(1.0)).collect();
         Self { of_beam, middle }
+    }
+
+    /// Ambient light at a cluster, 0 to 1: less in the crown's depth, and on the lower, inner side of its clump.
+    fn light(&self, foliage: &Foliage, cluster: &LeafCluster, outward: Vec3) -> f32 {
+        let lit = 0.5 + 0.5 * self.outward(cluster).dot((outward + Vec3::Y).normalize_or(Vec3::Y));
+        foliage.light(cluster.depth) * (CLUMP_SHADE + (1.0 - CLUMP_SHADE) * lit.clamp(0.0, 1.0))
     }
 
     fn outward(&self, cluster: &LeafCluster) -> Vec3 {

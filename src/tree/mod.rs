@@ -32,13 +32,17 @@ mod bounds;
 mod components;
 pub mod crown;
 mod ecs;
+pub mod ellipsoid;
 pub mod foliage;
+mod frontal_area;
 mod generator;
+pub mod green_wood;
 pub mod growth;
 pub mod individual;
 mod joint;
 pub mod leaf;
 mod leaf_mesh;
+mod leaf_places;
 mod leaf_season;
 pub mod mechanics;
 mod model;
@@ -60,6 +64,7 @@ pub use ecs::{
     season::Season,
     species_models::{BakedSpecies, BakedStage, SpeciesBaked, SpeciesModels, bake_variants},
 };
+pub(crate) use frontal_area::frontal_area_m2;
 pub use generator::Growth;
 pub use leaf_season::LeafSeason;
 pub use model::TreeModel;

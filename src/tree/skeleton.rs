@@ -102,6 +102,13 @@ impl Skeleton {
     }
 }
 
+/// For each beam whether it bears no other: those of terminal branches, and of branches that have lost theirs.
+pub(super) fn is_terminal(beams: &[SkeletonBeam]) -> Vec<bool> {
+    let mut terminal = vec![true; beams.len()];
+    beams.iter().filter_map(|beam| beam.parent).for_each(|parent| terminal[parent as usize] = false);
+    terminal
+}
+
 pub(super) fn continuations(beams: &[SkeletonBeam]) -> Vec<Option<u32>> {
     let mut next = vec![None; beams.len()];
     for (index, beam) in (0u32..).zip(beams) {

@@ -13,7 +13,9 @@ use super::{
     bark::Bark,
     foliage::Foliage,
     generator::Growth,
+    green_wood::GreenWood,
     growth::{age::Age, damage::Damage, reeves_blau::ReevesBlau},
+    leaf::LeafKind,
     phenology::Phenology,
 };
 use crate::{
@@ -75,13 +77,21 @@ pub struct Wood {
     pub drag_exponent: f32,
     /// Its bark.
     pub bark: Bark,
+    /// Its smallest branches, which may be green instead.
+    pub green: GreenWood,
 }
 
 impl Default for Wood {
     /// Green oak: Young's modulus and density after the Wood Handbook (Forest Products Laboratory, 2010, table 5-3:
     /// white oak, green).
     fn default() -> Self {
-        Self { young_modulus_pa: 8.6e9, density_kg_m3: 1000.0, drag_exponent: -0.05, bark: Bark::default() }
+        Self {
+            young_modulus_pa: 8.6e9,
+            density_kg_m3: 1000.0,
+            drag_exponent: -0.05,
+            bark: Bark::default(),
+            green: GreenWood::default(),
+        }
     }
 }
 
@@ -90,7 +100,8 @@ impl Wood {
         require("young_modulus_pa", self.young_modulus_pa, 1.0e8..=1.0e11)?;
         require("density_kg_m3", self.density_kg_m3, 100.0..=2000.0)?;
         require("drag_exponent", self.drag_exponent, -1.0..=0.0)?;
-        self.bark.validate().map_err(|error| error.inside("bark"))
+        self.bark.validate().map_err(|error| error.inside("bark"))?;
+        self.green.validate().map_err(|error| error.inside("green"))
     }
 }
 
@@ -107,6 +118,18 @@ impl Species {
         let species: Self = from_ron(text)?;
         species.validate()?;
         Ok(species)
+    }
+
+    /// Whether its foliage is ellipsoids, which grow translucent towards their outline.
+    #[must_use]
+    pub fn has_ellipsoids(&self) -> bool {
+        match &self.growth {
+            Growth::Gardner(_) => true,
+            Growth::Impressionist(_) => false,
+            Growth::ReevesBlau(_) | Growth::Oak(_) | Growth::Fir(_) | Growth::AonoKunii(_) => {
+                matches!(self.foliage.kind, LeafKind::Ellipsoids(_))
+            }
+        }
     }
 
     /// Checks every field.

@@ -2,6 +2,7 @@
 
 pub(super) mod strategies;
 mod wood_surface;
+mod zaharia;
 
 use bevy::math::Vec3;
 use proptest::prelude::*;
@@ -226,7 +227,8 @@ fn a_tree_is_determined_by_its_seed() {
 
 #[test]
 fn shipped_trees_have_realistic_sizes_and_few_enough_vertices() {
-    for (species, heights, widths) in [(oak(), 12.5..18.0, 10.0..19.0), (fir(), 17.0..23.0, 4.5..8.0)] {
+    // Firs that stand free are a quarter to four tenths as wide as high. Crowns are solid with some 20,000 vertices near the camera.
+    for (species, heights, widths) in [(oak(), 12.5..18.0, 10.0..19.0), (fir(), 17.0..25.0, 5.0..10.0)] {
         for seed in 0..6 {
             let skeleton = grow(&species, species.age.mature_years, seed);
             let (wood, leaves) = (wood(&species, &skeleton), leaves(&species, &skeleton));
@@ -237,7 +239,7 @@ fn shipped_trees_have_realistic_sizes_and_few_enough_vertices() {
             assert!(heights.contains(&skeleton.height_m()), "{name} {seed}: {} m", skeleton.height_m());
             assert!(widths.contains(&width), "{name} {seed}: {width} m wide");
             assert!((350..=750).contains(&skeleton.beams.len()), "{name} {seed}: {} beams", skeleton.beams.len());
-            assert!((8_000..=16_000).contains(&vertices), "{name} {seed}: {vertices} vertices");
+            assert!((12_000..=26_000).contains(&vertices), "{name} {seed}: {vertices} vertices");
         }
     }
 }

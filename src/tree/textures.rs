@@ -3,8 +3,9 @@
 use super::{
     bark::{BarkTextures, bark_textures},
     crown::{gardner, impressionist},
+    ellipsoid,
     generator::Growth,
-    leaf::{LeafTextures, leaf_textures},
+    leaf::{LeafKind, LeafTextures, leaf_textures},
     species::Species,
 };
 use crate::texture::TextureData;
@@ -26,10 +27,14 @@ pub fn species_textures(species: &Species) -> SpeciesTextures {
     let (foliage, foliage_normal) = match &species.growth {
         Growth::Impressionist(crown) => (impressionist::texture(crown, species.seed), None),
         Growth::Gardner(crown) => (gardner::texture(crown, species.seed), None),
-        Growth::ReevesBlau(_) | Growth::Oak(_) | Growth::Fir(_) | Growth::AonoKunii(_) => {
-            let LeafTextures { base_colour, normal } = leaf_textures(&species.foliage, species.seed);
-            (base_colour, Some(normal))
-        }
+        Growth::ReevesBlau(_) | Growth::Oak(_) | Growth::Fir(_) | Growth::AonoKunii(_) => match &species.foliage.kind {
+            LeafKind::Sprays => {
+                let LeafTextures { base_colour, normal } =
+                    leaf_textures(&species.foliage, &species.wood.green, species.seed);
+                (base_colour, Some(normal))
+            }
+            LeafKind::Ellipsoids(leaves) => (ellipsoid::texture(&leaves.surface, species.seed), None),
+        },
     };
     SpeciesTextures { bark: bark_textures(&species.wood.bark, species.seed), foliage, foliage_normal }
 }

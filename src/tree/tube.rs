@@ -71,8 +71,8 @@ impl Tube {
         self.rings.push(ring);
     }
 
-    /// Appends the tube; `light` is the ambient light at a point.
-    pub(super) fn write(&self, out: &mut WoodVertices, light: impl Fn(Vec3) -> f32) {
+    /// Appends the tube; `green` is its brightness if it is green, and else 0, `light` the ambient light at a point.
+    pub(super) fn write(&self, out: &mut WoodVertices, green: f32, light: impl Fn(Vec3) -> f32) {
         let mut across = self.rings[0].tangent.any_orthonormal_vector();
         let mut along_m = 0.0;
         for (index, ring) in self.rings.iter().enumerate() {
@@ -81,7 +81,8 @@ impl Tube {
                 across = Quat::from_rotation_arc(before.tangent, ring.tangent) * across;
                 along_m += before.centre.distance(ring.centre);
             }
-            let frame = Frame { across, v: along_m / self.tile_m, taper: self.taper(index), light: light(ring.centre) };
+            let (v, taper) = (along_m / self.tile_m, self.taper(index));
+            let frame = Frame { across, v, taper, green, light: light(ring.centre) };
             let start = out.positions.len() as u32;
             if ring.radius_m > 0.0 {
                 self.write_ring(ring, &frame, out);
@@ -126,7 +127,7 @@ impl Tube {
             out.positions.push(position.to_array());
             out.normals.push(normal.normalize().to_array());
             out.uvs.push([share * self.turns, v]);
-            out.sway.push([bound.0 as f32, bound.1, 0.0, frame.light]);
+            out.sway.push([bound.0 as f32, bound.1, frame.green, frame.light]);
         }
     }
 
@@ -134,7 +135,7 @@ impl Tube {
         out.positions.push(ring.centre.to_array());
         out.normals.push(ring.tangent.to_array());
         out.uvs.push([0.5 * self.turns, frame.v]);
-        out.sway.push([ring.beam as f32, ring.s, 0.0, frame.light]);
+        out.sway.push([ring.beam as f32, ring.s, frame.green, frame.light]);
     }
 
     /// Triangles between the ring that starts at `start` and the next.
@@ -160,6 +161,7 @@ struct Frame {
     across: Vec3,
     v: f32,
     taper: f32,
+    green: f32,
     light: f32,
 }
 

@@ -12,7 +12,7 @@ pub struct WoodVertices {
     pub normals: Vec<[f32; 3]>,
     /// Bark coordinates: u whole turns around, v along, one unit being [`Bark::tile_m`](super::bark::Bark::tile_m).
     pub uvs: Vec<[f32; 2]>,
-    /// Beam index (whole), place on that beam 0..1, leaf phase (0 for wood), ambient light 0..1.
+    /// Beam index (whole), place on that beam 0..1, brightness of green wood (0 for bark), ambient light 0..1.
     pub sway: Vec<[f32; 4]>,
     /// Triangles.
     pub indices: Vec<u32>,

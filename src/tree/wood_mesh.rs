@@ -36,6 +36,7 @@ const LONGEST_RING_STEP_M: f32 = 2.2;
 pub fn wood(species: &Species, skeleton: &Skeleton) -> WoodVertices {
     let mut vertices = WoodVertices::default();
     let continuations = skeleton.continuations();
+    let last_order = skeleton.beams.iter().map(|beam| beam.order).max().unwrap_or(0);
     let mut continues = vec![false; skeleton.beams.len()];
     continuations.iter().flatten().for_each(|&next| continues[next as usize] = true);
 
@@ -46,7 +47,8 @@ pub fn wood(species: &Species, skeleton: &Skeleton) -> WoodVertices {
         let base_radius_m = skeleton.beams[first].base_radius_m;
         let mut tube = Tube::new(base_radius_m, species.wood.bark.tile_m);
         branch.rings(&skeleton.trunk, |ring| tube.push(ring));
-        tube.write(&mut vertices, |point| species.foliage.light(skeleton.envelope.depth(point)));
+        let green = species.wood.green.of_order(skeleton.beams[first].order, last_order);
+        tube.write(&mut vertices, green, |point| species.foliage.light(skeleton.envelope.depth(point)));
     }
     vertices
 }

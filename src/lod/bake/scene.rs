@@ -14,7 +14,8 @@ use super::{
 use crate::{
     dynamics::pose::BeamPose,
     tree::{
-        Growth, Species, TreeModel,
+        Species, TreeModel,
+        species::Wood,
         textures::SpeciesTextures,
         vertices::{LeafVertices, WoodVertices},
     },
@@ -53,7 +54,7 @@ struct Surfaces {
     of_stem: Vec<bool>,
     bark: LinearMip,
     foliage: LinearMip,
-    /// Whether leaves grow transparent towards their outline: Gardner's ellipsoids.
+    /// Whether leaves grow transparent towards their outline: ellipsoids.
     has_soft_outlines: bool,
     sheds_leaves: bool,
 }
@@ -71,7 +72,7 @@ impl Scene {
     /// A model of `species` at rest with its textures.
     #[must_use]
     pub fn new(species: &Species, model: &TreeModel, textures: &SpeciesTextures) -> Self {
-        let mut vertices = wood_vertices(&model.wood);
+        let mut vertices = wood_vertices(&model.wood, &species.wood);
         let first_leaf = vertices.len() as u32;
         vertices.extend(leaf_vertices(&model.leaves));
         let mut triangles: Vec<[u32; 3]> = triples(&model.wood.indices).collect();
@@ -86,7 +87,7 @@ impl Scene {
             of_stem,
             bark: LinearMip::new(&textures.bark.base_colour, None, BARK_MIP),
             foliage: LinearMip::new(&textures.foliage, textures.foliage_normal.as_ref(), FOLIAGE_MIP),
-            has_soft_outlines: matches!(species.growth, Growth::Gardner(_)),
+            has_soft_outlines: species.has_ellipsoids(),
             sheds_leaves: !species.phenology.evergreen,
         };
         Self::with_vertices(vertices, Arc::new(surfaces))
@@ -184,12 +185,17 @@ fn triples(indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
 }
 
 /// Shaded as the renderer's shader shades wood.
-fn wood_vertices(wood: &WoodVertices) -> Vec<Vertex> {
+fn wood_vertices(wood: &WoodVertices, kind: &Wood) -> Vec<Vertex> {
+    let tint = kind.green.tint(kind.bark.colour);
+    let shade = |[_, _, green, light]: [f32; 4]| {
+        let of_green = |tint| if green > 0.0 { tint * green } else { 1.0 };
+        tint.map(|channel| (0.5 + 0.5 * light) * of_green(channel))
+    };
     let vertex = |index: usize| Vertex {
         position: Vec3::from_array(wood.positions[index]),
         normal: Vec3::from_array(wood.normals[index]),
         uv: wood.uvs[index],
-        shade: [0.5 + 0.5 * wood.sway[index][3]; 3],
+        shade: shade(wood.sway[index]),
     };
     (0..wood.positions.len()).map(vertex).collect()
 }

@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 
 use crate::{
     texture::{MASK_CUT_OFF, TextureData, linear},
-    tree::crown::silhouette_alpha,
+    tree::ellipsoid::silhouette_alpha,
 };
 
 /// Whether a triangle stops rays.

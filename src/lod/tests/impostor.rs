@@ -61,7 +61,7 @@ fn nearest_view(atlas: &ImpostorAtlas, to_eye: Vec3) -> UVec2 {
 
 #[test]
 fn mips_keep_the_mean_of_a_tile_and_tiles_have_a_free_rim() {
-    for (name, size) in [("birch", UVec2::new(32, 64)), ("fir", UVec2::new(16, 64)), ("hazel", UVec2::new(64, 64))] {
+    for (name, size) in [("birch", UVec2::new(32, 64)), ("poplar", UVec2::new(16, 64)), ("hazel", UVec2::new(64, 64))] {
         let (species, model, textures) = grown(name, 1.0);
         let scene = Scene::new(&species, &model, &textures);
         let atlas = ImpostorAtlas::bake(&[scene], &ImpostorSettings { views_per_side: 4, tile_texels: 64, rays: 1 });

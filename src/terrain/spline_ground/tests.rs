@@ -101,3 +101,67 @@ fn a_bad_patch_is_named_by_its_path() {
     let far_away = error(|patch| (patch.first_column, patch.first_row) = (1_000_000, -1_000_000));
     assert!(far_away.contains("points of the rectangle around all"), "{far_away}");
 }
+
+/// The shipped surface with as many patches and points as Zaharia's.
+fn five_patches() -> SplineGroundSettings {
+    SplineGroundSettings::from_ron(include_str!("../../../assets/terrain/five_patches.ground.ron")).unwrap()
+}
+
+#[test]
+fn the_shipped_surface_has_five_adjacent_patches_and_fifty_points() {
+    let patches = five_patches().patches;
+    assert_eq!(patches.len(), 5);
+    assert_eq!(patches.iter().map(|patch| patch.heights_m.len()).sum::<usize>(), 50);
+    for pair in patches.windows(2) {
+        assert_eq!(pair[0].first_column + pair[0].columns as i32, pair[1].first_column);
+        assert_eq!((pair[0].first_row, pair[0].rows), (pair[1].first_row, pair[1].rows));
+    }
+}
+
+/// Value, slope and second derivative along x at the end of a piece of second degree, from three places inside it: for
+/// such a piece these finite differences are exact.
+fn one_sided(ground: &SplineGround, border: DVec2, step_m: f64) -> [f64; 3] {
+    let [f0, f1, f2] = [0.0, 1.0, 2.0].map(|steps| ground.height_m(border + DVec2::X * (steps * step_m)));
+    [f0, (4.0 * f1 - 3.0 * f0 - f2) / (2.0 * step_m), (f0 - 2.0 * f1 + f2) / (step_m * step_m)]
+}
+
+/// Across the borders of the patches height and slope are continuous; the second derivative jumps from one second
+/// difference of the control points to the next, as that of any quadratic spline.
+#[test]
+fn the_shipped_surface_is_once_differentiable_across_the_borders_of_its_patches() {
+    let settings = five_patches();
+    let ground = SplineGround::new(&settings).unwrap();
+    let point_m = |column: i32, row: i32| -> f64 {
+        let own = settings.patches.iter().find(|p| (0..p.columns as i32).contains(&(column - p.first_column)));
+        own.filter(|p| (0..p.rows as i32).contains(&row))
+            .map_or(0.0, |p| f64::from(p.heights_m[(row * p.columns as i32 + column - p.first_column) as usize]))
+    };
+    let mut greatest_jump: f64 = 0.0;
+    for last_column in settings.patches[..4].iter().map(|patch| patch.first_column + patch.columns as i32 - 1) {
+        let x = settings.west_m + settings.cell_x_m * (f64::from(last_column) + 0.5);
+        for index in 0..61 {
+            let border = DVec2::new(x, settings.north_m + 5.0 * f64::from(index) - 30.0);
+            let [before, after] = [-7.0, 7.0].map(|step_m| one_sided(&ground, border, step_m));
+            assert_relative_eq!(before[0], after[0], epsilon = 1e-9);
+            // The derivative by a negative step has its own sign already.
+            assert_relative_eq!(before[1], after[1], epsilon = 1e-9);
+            assert_relative_eq!(before[1], ground.gradient(border).x, epsilon = 1e-9);
+            let expected = [last_column, last_column + 1].map(|column| -> f64 {
+                let along_z = |row: i32| b((border.y - settings.north_m) / settings.cell_z_m - f64::from(row));
+                let bend = |row| point_m(column - 1, row) - 2.0 * point_m(column, row) + point_m(column + 1, row);
+                (0..5).map(|row| along_z(row) * bend(row)).sum::<f64>() / settings.cell_x_m.powi(2)
+            });
+            assert_relative_eq!(before[2], expected[0], epsilon = 1e-9);
+            assert_relative_eq!(after[2], expected[1], epsilon = 1e-9);
+            greatest_jump = greatest_jump.max((after[2] - before[2]).abs());
+        }
+    }
+    assert!(greatest_jump > 1e-3, "a quadratic spline is not twice differentiable: {greatest_jump}");
+}
+
+#[test]
+fn a_slip_in_a_file_is_named_with_its_line_or_its_path() {
+    let error = |text: &str| SplineGroundSettings::from_ron(text).unwrap_err().to_string();
+    assert!(error("(\n  cell_m: 3.0,\n)").starts_with("line 2, column"), "{}", error("(\n  cell_m: 3.0,\n)"));
+    assert_eq!(error("(cell_x_m: 0.0)"), "`cell_x_m` is 0, but must be 0.01 to 1000000");
+}

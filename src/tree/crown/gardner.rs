@@ -17,8 +17,8 @@
 //! w(u) = 1 / (2 - u^2)                                       1 in the middle, 1/2 on the outline
 //! ```
 //!
-//! for `a w > 1/2` is `F > threshold(u)`. [`silhouette_alpha`](super::silhouette_alpha) is `w`. The two thresholds are
-//! chosen by the shares of the surface that they leave: `cover` and `outline_cover`.
+//! for `a w > 1/2` is `F > threshold(u)`. [`silhouette_alpha`](crate::tree::ellipsoid::silhouette_alpha) is `w`. The two
+//! thresholds are chosen by the shares of the surface that they leave: `cover` and `outline_cover`.
 //!
 //! Ellipsoids are carried by their limbs and do not flutter: their species wants a leaf response with `turn` and
 //! `flutter_angle_rad` 0.
@@ -36,6 +36,7 @@ use super::{crown_wood::CrownWood, ellipsoids};
 use crate::{
     texture::TextureData,
     tree::{
+        ellipsoid,
         growth::pipes,
         skeleton::{LeafCluster, Skeleton},
         vertices::LeafVertices,
@@ -108,5 +109,5 @@ pub fn leaves(crown: &GardnerCrown, skeleton: &Skeleton) -> LeafVertices {
 /// above 1/2 is the `cover` in every mip.
 #[must_use]
 pub fn texture(crown: &GardnerCrown, seed: u64) -> TextureData {
-    ellipsoids::texture(crown, seed)
+    ellipsoid::texture(&crown.surface(), seed)
 }

@@ -5,11 +5,14 @@ use serde::{Deserialize, Serialize};
 
 use super::clamped_scale;
 use crate::{
-    setting::{SettingError, require, require_colour},
+    setting::{SettingError, require},
     texture::fourier::FourierTexture,
-    tree::growth::{
-        envelope::{Envelope, EnvelopeShape},
-        trunk::Trunk,
+    tree::{
+        ellipsoid::EllipsoidSurface,
+        growth::{
+            envelope::{Envelope, EnvelopeShape},
+            trunk::Trunk,
+        },
     },
 };
 
@@ -41,7 +44,7 @@ pub struct GardnerCrown {
     pub cover: f32,
     /// Share that is drawn on its outline, 0 to the cover.
     pub outline_cover: f32,
-    /// Facets along a quarter of an ellipsoid's girth, 2 to 16: it has 8 times their square triangles.
+    /// Facets along a quarter of an ellipsoid's girth, 1 to 16: it has 8 times their square triangles.
     pub facets: u32,
     /// Colour of the bright leaves, sRGB 0 to 1.
     pub colour: [f32; 3],
@@ -86,13 +89,21 @@ impl GardnerCrown {
         require("size", self.size, 0.05..=1.0)?;
         require("size_spread", self.size_spread, 0.0..=0.9)?;
         require("spread", self.spread, 0.0..=1.0)?;
-        self.texture.validate().map_err(|error| error.inside("texture"))?;
-        require("cover", self.cover, 0.05..=1.0)?;
-        require("outline_cover", self.outline_cover, 0.0..=self.cover)?;
-        require("facets", self.facets as f32, 2.0..=16.0)?;
-        require_colour("colour", self.colour)?;
-        require_colour("shade_colour", self.shade_colour)?;
+        self.surface().validate()?;
         require("trunk_radius_m", self.trunk_radius_m, 0.01..=5.0)
+    }
+
+    /// How its ellipsoids are textured.
+    #[must_use]
+    pub fn surface(&self) -> EllipsoidSurface {
+        EllipsoidSurface {
+            texture: self.texture,
+            cover: self.cover,
+            outline_cover: self.outline_cover,
+            facets: self.facets,
+            colour: self.colour,
+            shade_colour: self.shade_colour,
+        }
     }
 
     /// The same crown `scale` (0.02 to 50) times as large: younger, where less than 1.

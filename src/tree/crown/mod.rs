@@ -18,7 +18,6 @@ mod polygons;
 mod profile;
 mod statistics;
 
-pub use ellipsoids::silhouette_alpha;
 pub use statistics::CrownStatistics;
 
 /// A scale of crowns within its domain, 0.02 to 50: what is no size becomes the nearest that is one, NaN the least.

@@ -18,7 +18,7 @@ use crate::{
         fourier::{Combination, FourierTexture, FourierWaves},
         linear, mix,
     },
-    tree::foliage::Foliage,
+    tree::{foliage::Foliage, green_wood::GreenWood},
 };
 
 /// The two textures of a spray.
@@ -41,9 +41,9 @@ const LOWEST_SHADE: f32 = 0.55;
 const SHADE: f32 = 0.38;
 const SHADE_REACH: f32 = 0.012;
 
-/// Renders the textures of a spray.
+/// Renders the textures of a spray, whose twig and side shoots may be green.
 #[must_use]
-pub fn leaf_textures(foliage: &Foliage, seed: u64) -> LeafTextures {
+pub fn leaf_textures(foliage: &Foliage, green: &GreenWood, seed: u64) -> LeafTextures {
     let leaf = &foliage.leaf;
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let shoots = shoots(leaf, &mut random);
@@ -54,10 +54,13 @@ pub fn leaf_textures(foliage: &Foliage, seed: u64) -> LeafTextures {
 
     let blade = Blade::new(leaf);
     let mut canvas = SprayCanvas::new(leaf);
+    let [twig, side_shoots] = green.of_spray(leaf.twig_colour);
     // A quarter of the leaves is below the twigs.
     let below = leaves.len() / 4;
     leaves[..below].iter().for_each(|leaf| canvas.leaf(&blade, leaf));
-    shoots.iter().for_each(|shoot| canvas.twig(shoot));
+    for (index, shoot) in shoots.iter().enumerate() {
+        canvas.twig(shoot, if index == 0 { twig } else { side_shoots });
+    }
     leaves[below..].iter().for_each(|leaf| canvas.leaf(&blade, leaf));
     LeafTextures { base_colour: canvas.colours.into_mask_texture(), normal: canvas.normals.into_normal_texture() }
 }
@@ -90,7 +93,6 @@ struct SprayCanvas {
     colour: [f32; 3],
     young: [f32; 3],
     back: [f32; 3],
-    bark: [f32; 3],
 }
 
 impl SprayCanvas {
@@ -105,13 +107,12 @@ impl SprayCanvas {
             colour,
             young: linear(leaf.young_colour),
             back: linear(leaf.back_colour),
-            bark: linear(leaf.twig_colour),
         }
     }
 
-    fn twig(&mut self, shoot: &Shoot) {
+    fn twig(&mut self, shoot: &Shoot, bark: [f32; 3]) {
         let axis = shoot.tip - shoot.root;
-        let (radius, bark) = (shoot.radius, self.bark);
+        let radius = shoot.radius;
         let direction = axis.normalize_or(Vec2::X);
         self.draw(shoot.root + 0.5 * axis, 0.5 * axis.length() + 2.0 * radius, |point| {
             let share = ((point - shoot.root).dot(axis) / axis.length_squared().max(1e-9)).clamp(0.0, 1.0);

@@ -54,6 +54,7 @@ use crate::dynamics::{
     admittance::equivalent_size_m,
     beam::{BeamDynamics, BeamSway, NO_PARENT},
     frequency_classes::FrequencyClasses,
+    pose::TIP_ANGLE_LIMIT,
 };
 
 /// Height at which foresters measure a trunk's diameter, m.
@@ -67,6 +68,7 @@ pub(super) fn beam_dynamics(species: &Species, skeleton: &Skeleton) -> Vec<BeamD
     let exponents = [species.foliage.drag_exponent, species.wood.drag_exponent];
     let in_leaf = TreeResponse::new(&tree, &tree.branches, species, skeleton);
     in_leaf.write(&tree, exponents[usize::from(!has_leaves)], |beam, sway| rows[beam].in_leaf = sway);
+    tree.branches.iter().for_each(|branch| share_angle_limit(branch, &mut rows));
     if has_leaves && !species.phenology.evergreen {
         let branches: Vec<LoadedBranch> = tree.branches.iter().map(LoadedBranch::without_leaves).collect();
         let bare = TreeResponse::new(&tree, &branches, species, skeleton);
@@ -97,6 +99,17 @@ impl TreeResponse {
                 write(*beam as usize, beam_sway(load, sway, drag_exponent));
             }
         }
+    }
+}
+
+/// Gives each beam of a branch its share of the angle that the branch's tip may turn by: that which it has of the bend.
+fn share_angle_limit(branch: &LoadedBranch, rows: &mut [BeamDynamics]) {
+    let gain = |beam: &u32, rows: &[BeamDynamics]| rows[*beam as usize].in_leaf.gain.max(0.0);
+    let total: f32 = branch.beams.iter().map(|beam| gain(beam, rows)).sum();
+    for beam in &branch.beams {
+        let share = gain(beam, rows) / total;
+        let share = if share.is_finite() { share } else { 1.0 / branch.beams.len() as f32 };
+        rows[*beam as usize].angle_limit_rad = TIP_ANGLE_LIMIT * share;
     }
 }
 
@@ -143,6 +156,7 @@ fn at_rest(beam: &SkeletonBeam) -> BeamDynamics {
         attach: beam.attach,
         parent: beam.parent.unwrap_or(NO_PARENT),
         in_leaf: BeamSway::default(),
+        angle_limit_rad: TIP_ANGLE_LIMIT,
         bare: BeamSway::default(),
     }
 }

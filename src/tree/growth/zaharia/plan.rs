@@ -160,3 +160,90 @@ pub(super) fn validate(
     require("max_age_years", ages_years[1], ages_years[0] + 1.0..=5000.0)?;
     require("pipe_exponent", exponent, 1.5..=4.0)
 }
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use rand::SeedableRng;
+
+    /// How many beams each beam of an order bears that are of the next.
+    pub(in crate::tree::growth::zaharia) fn children_per_beam(beams: &[SkeletonBeam], order: u8) -> Vec<usize> {
+        let mut numbers = vec![0; beams.len()];
+        for beam in beams.iter().filter(|beam| beam.order == order + 1) {
+            numbers[beam.parent.unwrap() as usize] += 1;
+        }
+        numbers.into_iter().zip(beams).filter(|(_, beam)| beam.order == order).map(|(number, _)| number).collect()
+    }
+
+    /// `l_branch / (length_father - dist)` of all branches of an order, measured on the beams. Those that sit closest to
+    /// their father's tip, where the quotient of two small lengths is inexact, are left out.
+    pub(in crate::tree::growth::zaharia) fn length_ratios(beams: &[SkeletonBeam], order: u8) -> Vec<f32> {
+        let mut left_m = vec![0.0; beams.len()];
+        // From tip to root: what is left of a branch beyond the end of each of its beams.
+        for index in (0..beams.len()).rev() {
+            let beam = &beams[index];
+            let continued =
+                beam.parent.filter(|&parent| beam.attach >= 1.0 && beams[parent as usize].order == beam.order);
+            if let Some(parent) = continued {
+                left_m[parent as usize] = left_m[index] + beam.length_m;
+            }
+        }
+        let ratio = |beam: &SkeletonBeam| {
+            let parent = beam.parent? as usize;
+            let room_m = left_m[parent] + (1.0 - beam.attach) * beams[parent].length_m;
+            (room_m > 0.05 * beams[parent].length_m).then(|| beam.length_m / room_m)
+        };
+        beams.iter().filter(|beam| beam.order == order).filter_map(ratio).collect()
+    }
+
+    #[test]
+    fn ages_are_clamped_to_the_lifetime() {
+        let half = Lifetime::at(105.0, 10.0, 200.0);
+        assert!((no_branch(4.0, 12.0, half.share) - 8.0).abs() < 1e-4 && half.over_max == 0.525);
+        assert_eq!((Lifetime::at(900.0, 10.0, 200.0).share, Lifetime::at(-3.0, 10.0, 200.0).share), (1.0, 0.0));
+    }
+
+    /// The trunk is `length age / max_age` and `delta` off at most.
+    #[test]
+    fn the_trunk_grows_linearly_with_age() {
+        let trunk = Trunk { height_m: 20.0, segments: 1, ..Trunk::default() };
+        for (age_years, grown_m) in [(25.0, 5.0), (50.0, 10.0), (100.0, 20.0)] {
+            let plan = |nodes: f32| Plan {
+                trunk: &trunk,
+                delta_m: 1.5,
+                shortest: 1.0,
+                lifetime: Lifetime::at(age_years, 0.0, 100.0),
+                shape: EnvelopeShape::Cone,
+                levels: vec![level(nodes)],
+            };
+            let length_m = |seed: u64, nodes: f32| {
+                let mut random = rand::rngs::Xoshiro256PlusPlus::seed_from_u64(seed);
+                plan(nodes).grow(&mut random).beams[0].length_m
+            };
+            assert!((length_m(1, 1.0) - grown_m).abs() < 1e-4, "random(1) is 0");
+            let lengths: Vec<f32> = (0..60).map(|seed| length_m(seed, 10.0)).collect();
+            assert!(
+                lengths.iter().all(|m| (m - grown_m).abs() <= 1.35 + 1e-4),
+                "delta random(10) / 10 is 1.35 at most"
+            );
+            let (least, greatest) = lengths.iter().fold((f32::MAX, 0.0_f32), |(l, g), &m| (l.min(m), g.max(m)));
+            assert!(least < grown_m - 1.0 && greatest > grown_m + 1.0, "both signs: {least} to {greatest}");
+        }
+    }
+
+    fn level(nodes: f32) -> Level {
+        Level {
+            adjust_branch: 0.0,
+            nodes,
+            per_node: 1,
+            floors: false,
+            first_at: 0.2,
+            first_angle_deg: 60.0,
+            last_angle_deg: 40.0,
+            angle_spread_deg: 0.0,
+            flat: false,
+            sag: 0.0,
+            crook_deg: 0.0,
+        }
+    }
+}

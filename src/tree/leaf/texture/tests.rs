@@ -3,7 +3,10 @@
 use super::*;
 use crate::{
     texture::MASK_CUT_OFF,
-    tree::leaf::{LeafArrangement, LeafMargin, LeafShape, outline},
+    tree::{
+        green_wood::GreenWood,
+        leaf::{LeafArrangement, LeafMargin, LeafShape, outline},
+    },
 };
 
 const SHAPES: [LeafShape; 10] = [
@@ -53,7 +56,7 @@ fn foliage(shape: LeafShape) -> Foliage {
 #[test]
 fn mips_keep_the_coverage_of_leaves() {
     for shape in SHAPES {
-        let texture = leaf_textures(&foliage(shape), 4).base_colour;
+        let texture = leaf_textures(&foliage(shape), &GreenWood::default(), 4).base_colour;
         let full = drawn_share(&texture.mips[0]);
         assert!((0.15..0.85).contains(&full), "{shape:?}: {full} of the card is leaf");
         // Down to 16 x 16 texels, of which one is 0.4%.
@@ -66,7 +69,7 @@ fn mips_keep_the_coverage_of_leaves() {
 #[test]
 fn no_leaf_is_cut_by_the_square_except_the_twig_at_its_root() {
     for shape in SHAPES {
-        let texture = leaf_textures(&foliage(shape), 4).base_colour;
+        let texture = leaf_textures(&foliage(shape), &GreenWood::default(), 4).base_colour;
         let drawn = |x: usize, y: usize| texture.mips[0][4 * (y * SIZE + x) + 3] > 127;
         let edge = (0..SIZE).flat_map(|k| [(k, 0), (SIZE - 1, k), (0, k), (k, SIZE - 1)]);
         let cut = edge.filter(|&(x, y)| drawn(x, y) && !(x < 12 && y > SIZE - 12)).count();
@@ -77,15 +80,17 @@ fn no_leaf_is_cut_by_the_square_except_the_twig_at_its_root() {
 #[test]
 fn a_spray_is_determined_by_its_seed() {
     let foliage = foliage(LeafShape::Ovate);
-    assert_eq!(leaf_textures(&foliage, 1), leaf_textures(&foliage, 1));
-    assert_ne!(leaf_textures(&foliage, 1), leaf_textures(&foliage, 2));
+    assert_eq!(leaf_textures(&foliage, &GreenWood::default(), 1), leaf_textures(&foliage, &GreenWood::default(), 1));
+    assert_ne!(leaf_textures(&foliage, &GreenWood::default(), 1), leaf_textures(&foliage, &GreenWood::default(), 2));
 }
 
 #[test]
 fn opposite_and_whorled_leaves_cover_more_than_alternate_ones() {
     let share = |arrangement| {
         let leaf = Leaf { arrangement, spacing: 0.8, ..Leaf::default() };
-        drawn_share(&leaf_textures(&Foliage { leaf, ..Foliage::default() }, 3).base_colour.mips[0])
+        drawn_share(
+            &leaf_textures(&Foliage { leaf, ..Foliage::default() }, &GreenWood::default(), 3).base_colour.mips[0],
+        )
     };
     let [alternate, opposite, whorled] =
         [LeafArrangement::Alternate, LeafArrangement::Opposite, LeafArrangement::Whorled].map(share);
@@ -127,7 +132,7 @@ fn extreme_leaves_have_textures() {
             let leaf =
                 Leaf { shape, length, shoots, spacing, width, stalk, curl: 1.0, vein_pairs: 24, ..Leaf::default() };
             leaf.validate().unwrap();
-            let textures = leaf_textures(&Foliage { leaf, ..Foliage::default() }, 1);
+            let textures = leaf_textures(&Foliage { leaf, ..Foliage::default() }, &GreenWood::default(), 1);
             assert_eq!((textures.base_colour.mips.len(), textures.normal.mips.len()), (10, 10));
         }
     }
