@@ -2,7 +2,8 @@
 
 use bevy::{
     mesh::{MeshVertexBufferLayoutRef, VertexAttributeDescriptor},
-    render::render_resource::{RenderPipelineDescriptor, SpecializedMeshPipelineError},
+    pbr::MeshPipelineKey,
+    render::render_resource::{CompareFunction, RenderPipelineDescriptor, SpecializedMeshPipelineError},
     shader::ShaderDefVal,
 };
 
@@ -22,6 +23,27 @@ pub(crate) fn specialize(
 /// Sets constants (`constants::NAME`) for the shaders of a pipeline.
 pub(crate) fn set_constants(descriptor: &mut RenderPipelineDescriptor, constants: &[(&'static str, u32)]) {
     constants.iter().for_each(|(name, value)| define(descriptor, ShaderDefVal::UInt((*name).into(), *value)));
+}
+
+/// In the main pass after a depth prepass, shades only what is seen: the fragments at the very depth that the prepass left. That has left out
+/// what is masked or faded, so the shaders' own tests, which would have every fragment run before its depth is compared, are not
+/// needed (`WINDWOOD_DEPTH_IS_KNOWN`). Both passes have the same vertex stage, and with it the same depths.
+pub(crate) fn shade_what_is_seen(descriptor: &mut RenderPipelineDescriptor, key: MeshPipelineKey) {
+    let is_opaque = key.intersection(MeshPipelineKey::BLEND_RESERVED_BITS) == MeshPipelineKey::BLEND_OPAQUE;
+    let is_prepass = descriptor.vertex.shader_defs.contains(&"PREPASS_PIPELINE".into());
+    let Some(depth) = &mut descriptor.depth_stencil else { return };
+    if is_opaque && !is_prepass && key.contains(MeshPipelineKey::DEPTH_PREPASS) {
+        depth.depth_compare = Some(CompareFunction::Equal);
+        depth.depth_write_enabled = Some(false);
+        define(descriptor, "WINDWOOD_DEPTH_IS_KNOWN".into());
+    }
+}
+
+/// Tells the shaders where they draw the shadows of a sun (`WINDWOOD_SUN_SHADOW`).
+pub(crate) fn tell_of_sun_shadow(descriptor: &mut RenderPipelineDescriptor, key: MeshPipelineKey) {
+    if key.contains(MeshPipelineKey::UNCLIPPED_DEPTH_ORTHO) {
+        define(descriptor, "WINDWOOD_SUN_SHADOW".into());
+    }
 }
 
 fn define(descriptor: &mut RenderPipelineDescriptor, definition: ShaderDefVal) {

@@ -19,7 +19,7 @@ use super::{
         components::TreeInstance,
         rows::BeamRow,
         tables::InstanceTables,
-        track::{update_posed_trees, write_tree_transforms},
+        track::{update_posed_trees, write_tree_rows},
     },
     lighting::{TreeLighting, TreeLights, find_lights, update_material_lights},
     lod::{
@@ -103,7 +103,7 @@ impl Plugin for TreeRenderPlugin {
             copy_render_layers
         );
         let pack = timed!(app, pack_incoming_wind);
-        let upload = timed!(app, upload_winds, write_tree_transforms, update_posed_trees, upload_frame);
+        let upload = timed!(app, upload_winds, write_tree_rows, update_posed_trees, upload_frame);
         let light =
             (find_lights, update_material_lights::<SwayExtension>.run_if(resource_changed::<TreeLights>)).chain();
         let can_draw = resource_exists::<RenderCapabilities>;

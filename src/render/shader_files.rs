@@ -10,6 +10,7 @@ pub(crate) fn load_shaders(app: &mut App) {
     load_shader_library!(app, "shaders/frame.wesl");
     load_shader_library!(app, "shaders/impostor.wesl");
     load_shader_library!(app, "shaders/instances.wesl");
+    load_shader_library!(app, "shaders/green_wood.wesl");
     load_shader_library!(app, "shaders/leaf.wesl");
     load_shader_library!(app, "shaders/lighting.wesl");
     load_shader_library!(app, "shaders/lod.wesl");
@@ -20,6 +21,7 @@ pub(crate) fn load_shaders(app: &mut App) {
     load_shader_library!(app, "shaders/tree_transform.wesl");
     load_shader_library!(app, "shaders/vertex_output.wesl");
     load_shader_library!(app, "shaders/view_direction.wesl");
+    load_shader_library!(app, "shaders/stand_wind.wesl");
     load_shader_library!(app, "shaders/wind.wesl");
     embedded_asset!(app, "shaders/impostor_fragment.wesl");
     embedded_asset!(app, "shaders/impostor_prepass.wesl");

@@ -86,7 +86,7 @@ fn measure(trees: u32, frames: u32, picture: &Path) -> Result<[f64; 5], String> 
         let adapter = app.world().get_resource::<RenderAdapterInfo>();
         println!("on {}", adapter.map_or("an unknown device", |info| info.name.as_str()));
     }
-    let camera = spawn_forest(&mut app, trees)?;
+    let camera = spawn_forest(&mut app, &Stand { trees, species: "oak", age_years: 90.0 })?;
     let target = capture::target(&mut app, SIZE);
     app.world_mut().entity_mut(camera).insert(capture::camera(&target));
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / 60.0)));
@@ -118,13 +118,21 @@ fn render_frames(app: &mut App, frames: u32) -> Result<[f64; 2], String> {
     Ok([start.elapsed(), systems].map(|sum| sum.as_secs_f64() * 1e3 / f64::from(frames)))
 }
 
+/// A stand of one species.
+pub struct Stand {
+    pub trees: u32,
+    pub species: &'static str,
+    pub age_years: f32,
+}
+
 /// Spawns the forest and waits until all that is wanted of it is drawn. Returns a [`Viewpoint`] that becomes the camera.
-fn spawn_forest(app: &mut App, trees: u32) -> Result<Entity, String> {
+pub fn spawn_forest(app: &mut App, stand: &Stand) -> Result<Entity, String> {
+    let Stand { trees, species, age_years } = *stand;
     let half_m = 0.5 * (trees as f32 * AREA_PER_TREE_M2).sqrt();
     let area = Area {
         shape: Shape::Rectangle { min_m: [-half_m; 2], max_m: [half_m; 2] },
         density_per_ha: 1e4 / AREA_PER_TREE_M2,
-        stock: vec![Stock { species: "oak".into(), age_years: 90.0, age_spread_years: 20.0, ..default() }],
+        stock: vec![Stock { species: species.into(), age_years, age_spread_years: 0.22 * age_years, ..default() }],
         ..default()
     };
     let world = app.world_mut();
@@ -132,17 +140,7 @@ fn spawn_forest(app: &mut App, trees: u32) -> Result<Entity, String> {
     let far_to_m = (4.0 * half_m).max(ForestSettings::default().far_to_m);
     let settings = ForestSettings { far_to_m, cells_at_once: 64, trees_per_frame: 100_000, ..default() };
     world.spawn((Forest::new(plan), settings));
-    let ground = world.resource_mut::<Assets<Mesh>>().add(Plane3d::default().mesh().size(20_000.0, 20_000.0));
-    let green = StandardMaterial { base_color: Color::srgb(0.36, 0.42, 0.2), perceptual_roughness: 1.0, ..default() };
-    let green = world.resource_mut::<Assets<StandardMaterial>>().add(green);
-    world.spawn((Mesh3d(ground), MeshMaterial3d(green)));
-    world.spawn((
-        DirectionalLight { illuminance: 12_000.0, shadow_maps_enabled: true, ..default() },
-        Transform::default().looking_to(Vec3::new(-0.5, -0.7, -0.4), Vec3::Y),
-    ));
-    world.insert_resource(Wind { speed: 8.0, ..default() });
-    world.insert_resource(GlobalAmbientLight { brightness: 700.0, ..default() });
-    world.insert_resource(ClearColor(Color::srgb(0.62, 0.75, 0.9)));
+    spawn_ground_and_sun(world);
     let place =
         Transform::from_xyz(0.0, EYE_HEIGHT_M, half_m + 10.0).looking_at(Vec3::new(0.0, 0.0, half_m - 150.0), Vec3::Y);
     let viewpoint = world.spawn((Viewpoint, place)).id();
@@ -155,4 +153,19 @@ fn spawn_forest(app: &mut App, trees: u32) -> Result<Entity, String> {
         }
     }
     Ok(viewpoint)
+}
+
+/// Level ground, a sun with shadows, and a fresh breeze.
+pub fn spawn_ground_and_sun(world: &mut World) {
+    let ground = world.resource_mut::<Assets<Mesh>>().add(Plane3d::default().mesh().size(20_000.0, 20_000.0));
+    let green = StandardMaterial { base_color: Color::srgb(0.36, 0.42, 0.2), perceptual_roughness: 1.0, ..default() };
+    let green = world.resource_mut::<Assets<StandardMaterial>>().add(green);
+    world.spawn((Mesh3d(ground), MeshMaterial3d(green)));
+    world.spawn((
+        DirectionalLight { illuminance: 12_000.0, shadow_maps_enabled: true, ..default() },
+        Transform::default().looking_to(Vec3::new(-0.5, -0.7, -0.4), Vec3::Y),
+    ));
+    world.insert_resource(Wind { speed: 8.0, ..default() });
+    world.insert_resource(GlobalAmbientLight { brightness: 700.0, ..default() });
+    world.insert_resource(ClearColor(Color::srgb(0.62, 0.75, 0.9)));
 }

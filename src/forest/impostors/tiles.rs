@@ -5,16 +5,18 @@ use super::{
     tile_mesh::{ImpostorShape, TileMesh, tile_meshes},
 };
 use crate::{
-    forest::cells::ForestCells,
+    forest::{cells::ForestCells, stand::Stand},
     render::{
         RenderCapabilities,
         draw::layers::insert_layers_and_culling,
-        impostors::near_mask::{MaskRange, NearMask, NearMasks},
+        impostors::near_mask::{CANOPY_BLOCKS, MaskRange, NearMask, NearMasks},
     },
     tree::Species,
+    wind::{Canopy, PackedCanopy},
 };
 use bevy::{
     camera::visibility::{NoAutoAabb, RenderLayers},
+    math::DVec2,
     platform::collections::{HashMap, HashSet},
     prelude::*,
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
@@ -30,13 +32,16 @@ pub struct ForestImpostors {
     cells: i32,
     /// How many of the forest's species they lack, which cannot be loaded.
     lacking_species: usize,
-    making: Vec<(IVec2, Task<Vec<TileMesh>>)>,
+    making: Vec<(IVec2, Task<MadeTile>)>,
     tiles: HashMap<IVec2, Tile>,
     is_complete: bool,
     /// The near cells that are marked in the masks of the tiles, and what these were last written for.
     marked: HashSet<IVec2>,
     marked_for: Option<(u64, MaskRange)>,
 }
+
+/// The meshes of a tile, and the canopies of its blocks.
+type MadeTile = (Vec<TileMesh>, Vec<PackedCanopy>);
 
 struct Tile {
     /// One mesh a species.
@@ -143,7 +148,8 @@ pub(super) fn stream_impostor_tiles(
     for (entity, mut forest, layers, tiles) in &mut forests {
         let is_wanted = forest.settings().far_to_m > 0.0;
         forest.keep_tiles_for_impostors(is_wanted);
-        let is_ready = forest.species().iter().all(|species| library.is_settled(species, &assets));
+        let is_baked = forest.species().iter().all(|species| library.is_settled(species, &assets));
+        let is_ready = is_baked && forest.stand().is_some();
         let mut tiles = match tiles {
             Some(tiles) if is_wanted && tiles.tiles_since == forest.tiles_since() => tiles,
             None if !is_wanted => continue,
@@ -173,6 +179,13 @@ fn begin(entity: Entity, forest: &mut ForestCells, is_wanted: bool, commands: &m
     } else {
         forest_entity.try_remove::<ForestImpostors>();
     }
+}
+
+/// The stand in the middle of each block of a tile with that least corner and side, m.
+fn block_canopies(stand: &Stand, corner_m: DVec2, tile_m: f32) -> Vec<PackedCanopy> {
+    let block_m = tile_m / CANOPY_BLOCKS as f32;
+    let canopies = stand.canopies(corner_m + f64::from(0.5 * block_m), block_m, CANOPY_BLOCKS);
+    canopies.iter().map(Canopy::pack).collect()
 }
 
 /// Spawns the meshes of a forest's tiles.
@@ -209,11 +222,16 @@ impl ForestImpostors {
         if room == 0 || !forest.has_tiles_for_impostors() {
             return;
         }
+        let Some(stand) = forest.stand().cloned() else { return };
+        let tile_m = self.cells as f32 * forest.planter().cell_m();
         let shape = |species: &Handle<Species>| library.get(species.id()).map(ImpostorShape::from);
         let shapes: Arc<[Option<ImpostorShape>]> = forest.species().iter().map(shape).collect();
         for (place, planted) in forest.take_tiles_for_impostors(room) {
-            let (shapes, corner) = (shapes.clone(), forest.planter().corner_m(place * self.cells).as_vec2());
-            let task = AsyncComputeTaskPool::get().spawn(async move { tile_meshes(&planted, corner, &shapes) });
+            let (shapes, stand, corner) =
+                (shapes.clone(), stand.clone(), forest.planter().corner_m(place * self.cells));
+            let task = AsyncComputeTaskPool::get().spawn(async move {
+                (tile_meshes(&planted, corner.as_vec2(), &shapes), block_canopies(&stand, corner, tile_m))
+            });
             // What was planted before is out of date.
             self.making.retain(|(other, _)| *other != place);
             self.making.push((place, task));
@@ -231,7 +249,7 @@ impl ForestImpostors {
     ) {
         let Self { making, tiles, cells, marked, .. } = self;
         making.retain_mut(|(place, task)| {
-            let Some(made) = block_on(poll_once(task)) else { return true };
+            let Some((made, canopies)) = block_on(poll_once(task)) else { return true };
             if !forest.has_tile(*place) {
                 return false;
             }
@@ -244,6 +262,7 @@ impl ForestImpostors {
                 }
                 Tile { meshes: Vec::new(), mask, trees: 0, bytes: 0 }
             });
+            masks.set_canopies(&tile.mask, &canopies);
             tile.meshes.drain(..).for_each(|mesh| commands.entity(mesh).despawn());
             (tile.trees, tile.bytes) = (0, 0);
             let corner = forest.planter().corner_m(first).as_vec2();

@@ -212,7 +212,7 @@ fn frame_row(
         fade: viewers.thresholds.fade,
         height_tolerance: HEIGHT_TOLERANCE,
         viewer_count: 0,
-        padding: 0,
+        shadow_end: viewers.thresholds.shadow_end,
         viewers: [[0.0; 4]; MAX_VIEWERS],
     };
     for (place, viewer) in row.viewers.iter_mut().zip(viewers.iter()) {

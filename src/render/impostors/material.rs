@@ -2,7 +2,7 @@
 
 use super::{
     mesh::{ATTRIBUTE_IMPOSTOR, MAX_SIZE, MAX_VARIANTS},
-    near_mask::HEADER,
+    near_mask::{CANOPY_BLOCKS, HEADER},
 };
 use crate::{
     lod::{ImpostorAtlas, ImpostorFrame, ImpostorSway},
@@ -10,7 +10,7 @@ use crate::{
         buffers::sway_buffers::SwayBuffers,
         instances::rows::sway_vectors,
         lighting::{LitAsTrees, TreeLights},
-        pipeline::{set_constants, specialize},
+        pipeline::{set_constants, shade_what_is_seen, specialize, tell_of_sun_shadow},
         species::tree_material::SeasonUniform,
         texture_image::{ALL_MIPS, image},
     },
@@ -217,9 +217,15 @@ impl MaterialExtension for ImpostorExtension {
         // Coordinates and colour carry the place on the tree and the direction to the view to the fragments.
         let mut flags = vec!["VERTEX_UVS_A", "VERTEX_UVS_B", "VERTEX_COLORS", "VISIBILITY_RANGE_DITHER"];
         flags.extend(key.bind_group_data.flags());
-        let constants =
-            [("MAX_IMPOSTOR_VARIANTS", MAX_VARIANTS), ("MAX_IMPOSTOR_SIZE", MAX_SIZE), ("NEAR_MASK_HEADER", HEADER)];
+        let constants = [
+            ("MAX_IMPOSTOR_VARIANTS", MAX_VARIANTS),
+            ("MAX_IMPOSTOR_SIZE", MAX_SIZE),
+            ("NEAR_MASK_HEADER", HEADER),
+            ("CANOPY_BLOCKS", CANOPY_BLOCKS),
+        ];
         set_constants(descriptor, &constants);
+        shade_what_is_seen(descriptor, key.mesh_key);
+        tell_of_sun_shadow(descriptor, key.mesh_key);
         specialize(descriptor, layout, &attributes, &flags)
     }
 }

@@ -1,13 +1,20 @@
-//! Which cells' trees are entities, as the shader of impostors reads it: for each tile a bit a cell.
+//! Which cells' trees are entities, and in what stands they stand, as the shader of impostors reads it: for each tile a bit a cell, then the
+//! canopies of its blocks.
 
-use crate::render::{
-    buffers::{dirty_table::DirtyTable, sway_buffers::empty_buffer, table_uploads::TableUploads},
-    instances::rows::NO_IMPOSTOR_M,
+use crate::{
+    render::{
+        buffers::{dirty_table::DirtyTable, sway_buffers::empty_buffer, table_uploads::TableUploads},
+        instances::rows::NO_IMPOSTOR_M,
+    },
+    wind::{Canopy, PackedCanopy},
 };
 use bevy::{mesh::MeshTag, prelude::*, render::storage::ShaderBuffer};
 
 /// Words of a mask before its bits: those of [`MaskRange`], and the cells along a side.
 pub(crate) const HEADER: u32 = 4;
+
+/// Blocks along a side of a tile whose trees have one canopy: each at least as large as a cell, for far trees show little of a difference.
+pub(crate) const CANOPY_BLOCKS: u32 = 4;
 
 /// The distances of a forest's impostors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,12 +58,17 @@ impl NearMask {
     }
 
     fn words(&self) -> u32 {
+        self.first_canopy() + 2 * CANOPY_BLOCKS * CANOPY_BLOCKS
+    }
+
+    /// The first word of its canopies, counted from its own first word.
+    fn first_canopy(&self) -> u32 {
         HEADER + (self.cells * self.cells).div_ceil(u32::BITS)
     }
 }
 
 impl NearMasks {
-    /// A mask for a tile of so many cells along a side, none of which is near.
+    /// A mask for a tile of so many cells along a side, none of which is near, in the open.
     pub fn add(&mut self, cells: u32, range: MaskRange) -> NearMask {
         let free = self.free.iter().position(|mask| mask.cells == cells);
         let mask =
@@ -65,6 +77,7 @@ impl NearMasks {
         (HEADER..mask.words()).for_each(|word| self.words.write(mask.first + word, 0));
         self.words.write(mask.first + HEADER - 1, cells);
         self.set_range(&mask, range);
+        self.set_canopies(&mask, &[Canopy::OPEN; (CANOPY_BLOCKS * CANOPY_BLOCKS) as usize]);
         mask
     }
 
@@ -77,6 +90,14 @@ impl NearMasks {
     pub fn set_range(&mut self, mask: &NearMask, MaskRange { cell_m, far_to_m, from_m }: MaskRange) {
         for (word, value) in (mask.first..).zip([cell_m, far_to_m, from_m.unwrap_or(NO_IMPOSTOR_M)]) {
             self.words.write(word, value.to_bits());
+        }
+    }
+
+    /// Sets the canopies of a tile's blocks, row after row.
+    pub fn set_canopies(&mut self, mask: &NearMask, canopies: &[PackedCanopy]) {
+        let words = canopies.iter().flat_map(|canopy| [canopy.profile, canopy.exposure]);
+        for (word, value) in (mask.first + mask.first_canopy()..mask.first + mask.words()).zip(words) {
+            self.words.write(word, value);
         }
     }
 
@@ -126,6 +147,19 @@ mod tests {
         assert_eq!(header(&other)[2..], [50.0_f32.to_bits(), 8]);
     }
 
+    #[test]
+    fn a_mask_has_the_canopies_of_its_blocks() {
+        let mut masks = masks();
+        let mask = masks.add(8, RANGE);
+        let canopies: Vec<PackedCanopy> =
+            (0..16).map(|block| PackedCanopy { profile: block, exposure: !block }).collect();
+        masks.set_canopies(&mask, &canopies);
+        // As the shader reads it: two words for the bits of 64 cells.
+        let words = &masks.words.rows()[HEADER as usize + 2..];
+        assert_eq!(words[2 * 6..2 * 6 + 2], [6, !6]);
+        assert_eq!(words.len(), 32);
+    }
+
     /// Masks of several sizes that come, change and go at random hold what a set of cells a mask holds.
     #[test]
     fn masks_hold_the_near_cells_of_their_own_tile() {
@@ -166,6 +200,7 @@ mod tests {
             assert_eq!(found, *near);
         }
         // Masks that were given back are used again: at most 40 of each size were ever in use.
-        assert!(longest <= 40 * (5 * HEADER + 1 + 2 + 8 + 32 + 128), "{longest} words");
+        let canopies = 2 * CANOPY_BLOCKS * CANOPY_BLOCKS;
+        assert!(longest <= 40 * (5 * (HEADER + canopies) + 1 + 2 + 8 + 32 + 128), "{longest} words");
     }
 }

@@ -3,6 +3,7 @@
 use crate::{
     dynamics::beam::{BeamDynamics, BeamSway},
     tree::LeafSeason,
+    wind::{Canopy, PackedCanopy},
 };
 use bytemuck::{Pod, Zeroable};
 
@@ -19,7 +20,8 @@ pub(crate) struct BeamRow {
     loads: [f32; 4],
     parent: u32,
     leaf_season: u32,
-    padding: [u32; 2],
+    angle_limit_rad: f32,
+    padding: u32,
 }
 
 impl BeamRow {
@@ -36,7 +38,8 @@ impl BeamRow {
             loads,
             parent: beam.parent,
             leaf_season: leaf_season.bits(),
-            padding: [0; 2],
+            angle_limit_rad: beam.angle_limit_rad,
+            padding: 0,
         }
     }
 }
@@ -75,7 +78,8 @@ pub(crate) struct FrameRow {
     pub height_tolerance: f32,
     /// Of `viewers`, those that are set.
     pub viewer_count: u32,
-    pub padding: u32,
+    /// From here on impostors cast the shadows of trees in a sun's maps, per metre of their height.
+    pub shadow_end: f32,
     /// The cameras: place, and the factor of [`LodViewer::factor`](crate::render::lod::viewers::LodViewer::factor).
     pub viewers: [[f32; 4]; MAX_VIEWERS],
 }
@@ -95,13 +99,27 @@ pub(crate) struct TreeRow {
     pub season_and_height: u32,
     /// No impostor stands for the tree nearer than this, m; [`NO_IMPOSTOR_M`] where none stands for it at all.
     pub impostor_from_m: f32,
-    pub padding: [u32; 3],
+    /// A [`PackedCanopy`].
+    pub canopy_profile: u32,
+    pub canopy_exposure: u32,
+    pub padding: u32,
 }
 
 /// Farther than anything, m.
 pub(crate) const NO_IMPOSTOR_M: f32 = 1e30;
 
 impl TreeRow {
+    /// In the open, without poses.
+    pub fn new(first_beam: u32) -> Self {
+        let mut row = Self { first_beam, ..Self::default() };
+        row.set_canopy(Canopy::OPEN);
+        row
+    }
+
+    pub fn set_canopy(&mut self, PackedCanopy { profile, exposure }: PackedCanopy) {
+        (self.canopy_profile, self.canopy_exposure) = (profile, exposure);
+    }
+
     /// How far it is ahead of the season, -0.5 to 0.5 years in steps of 8 minutes, and its height, m, to 256 m in steps of
     /// 4 mm.
     pub fn season_and_height(season_shift: f32, height_m: f32) -> u32 {

@@ -12,6 +12,7 @@ use super::{
 use crate::{
     render::buffers::dirty_table::{DirtyTable, with_reserve},
     tree::TreeModel,
+    wind::Canopy,
 };
 use bevy::{platform::collections::HashMap, prelude::*};
 use offset_allocator::{Allocation, Allocator};
@@ -118,7 +119,7 @@ impl InstanceTables {
         self.trees.grow_to(row + 1);
         self.rows.resize(self.trees.len() as usize, RowState::default());
         self.rows[row as usize] = RowState { beams, ..default() };
-        self.trees.write(row, TreeRow { first_beam, ..default() });
+        self.trees.write(row, TreeRow::new(first_beam));
         Some(row)
     }
 
@@ -137,6 +138,13 @@ impl InstanceTables {
         tree.position = translation.to_array();
         tree.scale = scale;
         tree.season_and_height = TreeRow::season_and_height(season_shift, height_m * scale.abs());
+    }
+
+    /// Writes in what stand a tree stands.
+    pub fn write_canopy(&mut self, row: u32, canopy: &Canopy) {
+        if let Some(tree) = self.trees.get_mut(row) {
+            tree.set_canopy(canopy.pack());
+        }
     }
 
     /// Writes from where on an impostor stands for a tree, m.

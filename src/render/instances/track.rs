@@ -6,26 +6,40 @@ use super::{
 };
 use crate::{
     render::{capabilities::RenderCapabilities, lod::thresholds::LodSelection},
+    sway::InCanopy,
     tree::Tree,
+    wind::Canopy,
 };
 use bevy::prelude::*;
 
 /// Scales may differ by this share before a tree counts as stretched.
 const UNIFORM_TOLERANCE: f32 = 1e-3;
 
-/// Writes the transforms of trees that are new, were changed or have moved.
-pub(crate) fn write_tree_transforms(
+/// A tree whose row may have to be written.
+type ChangedTree =
+    Or<(Changed<GlobalTransform>, Changed<Tree>, Changed<TreeInstance>, Changed<HasImpostor>, Changed<InCanopy>)>;
+
+/// Writes the rows of trees that are new, were changed or have moved.
+pub(crate) fn write_tree_rows(
     mut tables: ResMut<InstanceTables>,
     mut has_warned: Local<bool>,
     trees: Query<
-        (Entity, &TreeInstance, &Tree, &GlobalTransform, Option<&HasImpostor>),
-        Or<(Changed<GlobalTransform>, Changed<Tree>, Changed<TreeInstance>, Changed<HasImpostor>)>,
+        (Entity, &TreeInstance, &Tree, &GlobalTransform, Option<&HasImpostor>, Option<&InCanopy>),
+        ChangedTree,
     >,
+    mut left_canopies: RemovedComponents<InCanopy>,
+    instances: Query<&TreeInstance, Without<InCanopy>>,
 ) {
-    for (entity, instance, tree, at, impostor) in &trees {
+    for tree in left_canopies.read().filter_map(|tree| instances.get(tree).ok()) {
+        if let Some(row) = tree.row {
+            tables.write_canopy(row, &Canopy::default());
+        }
+    }
+    for (entity, instance, tree, at, impostor, canopy) in &trees {
         let Some(row) = instance.row else { continue };
         tables.write_transform(row, at, tree.season_shift(), instance.height_m);
         tables.write_impostor(row, impostor.and_then(|impostor| impostor.from_m));
+        tables.write_canopy(row, &canopy.copied().unwrap_or_default().0);
         if !*has_warned && !is_uniform(at.scale()) {
             warn!(
                 "windwood: tree {entity} has the scale {}, but a tree in the wind has one scale for all axes; the nearest \

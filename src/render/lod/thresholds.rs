@@ -46,6 +46,8 @@ pub(crate) struct LodThresholds {
     /// Of each level, per metre of the tree's height; the last has no end, unless an impostor follows it.
     pub ends: [f32; MOST_LEVELS],
     pub fade: f32,
+    /// From here on impostors cast the shadows of trees in the maps of suns, per metre of their height.
+    pub shadow_end: f32,
     margin: f32,
 }
 
@@ -57,7 +59,11 @@ impl LodThresholds {
             LevelStyle::Paper => [high, medium, NEVER_M],
             LevelStyle::Full => [NEVER_M; MOST_LEVELS],
         };
-        Self { ends, fade: settings.fade, margin: settings.screen_sizes.margin }
+        let shadow_end = match settings.style {
+            LevelStyle::Thinned => settings.shadow_impostors_from_heights,
+            LevelStyle::Paper | LevelStyle::Full => NEVER_M,
+        };
+        Self { ends, fade: settings.fade, shadow_end, margin: settings.screen_sizes.margin }
     }
 
     /// The selection for a tree of a height, m, with `count` levels, after the selection before.

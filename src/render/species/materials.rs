@@ -3,11 +3,11 @@
 use super::{
     images::SpeciesImages,
     lod_meshes::MaterialKind,
-    tree_material::{LeafUniform, SeasonUniform, SwayExtension, SwayMaterial},
+    tree_material::{GreenWoodUniform, LeafUniform, SeasonUniform, SwayExtension, SwayMaterial},
 };
 use crate::{
     render::{buffers::sway_buffers::SwayBuffers, capabilities::RenderCapabilities, lighting::TreeLights},
-    tree::{Growth, Species},
+    tree::Species,
 };
 use bevy::{
     asset::RenderAssetUsages,
@@ -52,8 +52,9 @@ impl MaterialAssets<'_> {
             beams: self.buffers.beams.clone(),
             trees: self.buffers.trees.clone(),
             frame: self.buffers.frame.clone(),
-            leaf: LeafUniform::new(&species.foliage.response, matches!(species.growth, Growth::Gardner(_))),
+            leaf: LeafUniform::new(&species.foliage.response, species.has_ellipsoids()),
             season: SeasonUniform::new(&species.phenology, images.foliage_colour),
+            green_wood: GreenWoodUniform::new(&species.wood),
             lights: *self.lights,
         };
         let surface = self.images.add(images.bark_surface);

@@ -5,10 +5,10 @@ use crate::{
     render::{
         instances::tag::TAG_LAYOUT,
         lighting::{LitAsTrees, TreeLights},
-        pipeline::{set_constants, specialize},
+        pipeline::{set_constants, shade_what_is_seen, specialize, tell_of_sun_shadow},
     },
     sway::FLUTTER_PERIOD_S,
-    tree::phenology::Phenology,
+    tree::{phenology::Phenology, species::Wood},
 };
 use bevy::{
     mesh::{MeshVertexAttribute, MeshVertexBufferLayoutRef, VertexFormat},
@@ -56,6 +56,9 @@ pub struct SwayExtension {
     /// What they do over the year.
     #[uniform(107)]
     pub season: SeasonUniform,
+    /// How green the smallest branches are.
+    #[uniform(108)]
+    pub green_wood: GreenWoodUniform,
     /// What its shaders are compiled for.
     pub lights: TreeLights,
 }
@@ -75,13 +78,13 @@ pub struct LeafUniform {
     flutter_angle_rad: f32,
     flutter_frequency_hz: f32,
     period_s: f32,
-    /// 1 where the foliage is Gardner's ellipsoids.
+    /// 1 where the foliage is ellipsoids.
     is_ellipsoid: f32,
     padding: f32,
 }
 
 impl LeafUniform {
-    /// How leaves turn, and whether they are Gardner's ellipsoids, which grow transparent towards their outline.
+    /// How leaves turn, and whether they are ellipsoids, which grow transparent towards their outline.
     pub fn new(leaf: &LeafResponse, is_ellipsoid: bool) -> Self {
         Self {
             turn: leaf.turn,
@@ -93,6 +96,19 @@ impl LeafUniform {
             is_ellipsoid: f32::from(u8::from(is_ellipsoid)),
             padding: 0.0,
         }
+    }
+}
+
+/// `GreenWood` of the shader.
+#[derive(ShaderType, Reflect, Clone, Copy, Debug, Default)]
+pub struct GreenWoodUniform {
+    tint: Vec4,
+}
+
+impl GreenWoodUniform {
+    /// The green branches of a wood.
+    pub fn new(wood: &Wood) -> Self {
+        Self { tint: Vec3::from_array(wood.green.tint(wood.bark.colour)).extend(1.0) }
     }
 }
 
@@ -191,6 +207,8 @@ impl MaterialExtension for SwayExtension {
         }
         flags.extend(key.bind_group_data.flags());
         set_constants(descriptor, &TAG_LAYOUT);
+        shade_what_is_seen(descriptor, key.mesh_key);
+        tell_of_sun_shadow(descriptor, key.mesh_key);
         specialize(descriptor, layout, &attributes, &flags)
     }
 }

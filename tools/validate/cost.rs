@@ -1,0 +1,179 @@
+//! What a frame costs, pass by pass: vertices and fragments shaded, triangles, milliseconds. The counts are the device's own pipeline
+//! statistics, which software Vulkan has too.
+//!
+//! Bevy counts nothing in its shadow passes, but their time.
+
+use crate::{
+    grid::{self, Stand},
+    report::Report,
+    support::capture,
+};
+use bevy::{
+    diagnostic::{Diagnostic, DiagnosticsStore},
+    prelude::*,
+    render::{
+        RenderPlugin,
+        diagnostic::RenderDiagnosticsPlugin,
+        render_resource::WgpuFeatures,
+        settings::{RenderCreation, WgpuSettings},
+    },
+    time::TimeUpdateStrategy,
+};
+use bevy_windwood::prelude::*;
+use std::{
+    collections::BTreeMap,
+    path::Path,
+    time::{Duration, Instant},
+};
+
+const SIZE: (u32, u32) = (960, 540);
+/// Frames before those that count: levels and impostors settle, and the recorder fills.
+const WARM_UP_FRAMES: u32 = 4;
+/// Longest wait for a tree.
+const LONGEST_WAIT: Duration = Duration::from_secs(60);
+/// Frames that count.
+const FRAMES: u32 = 3;
+
+/// Scenes, and the keys of their numbers: fragments and vertices shaded in all passes that are counted, a frame and one without shadows.
+const SCENES: [(&str, Stand, [&str; 4]); 4] = [
+    (
+        "one oak",
+        Stand { trees: 1, species: "oak", age_years: 90.0 },
+        ["oak_fragments", "oak_vertices", "oak_frame_ms", "oak_unshadowed_ms"],
+    ),
+    (
+        "one spruce",
+        Stand { trees: 1, species: "norway_spruce", age_years: 80.0 },
+        ["spruce_fragments", "spruce_vertices", "spruce_frame_ms", "spruce_unshadowed_ms"],
+    ),
+    (
+        "1,000 oaks",
+        Stand { trees: 1_000, species: "oak", age_years: 90.0 },
+        ["fragments_1k", "vertices_1k", "frame_ms_1k", "unshadowed_ms_1k"],
+    ),
+    (
+        "100,000 oaks",
+        Stand { trees: 100_000, species: "oak", age_years: 90.0 },
+        ["fragments_100k", "vertices_100k", "frame_ms_100k", "unshadowed_ms_100k"],
+    ),
+];
+
+/// What the passes of a frame did: by pass and quantity.
+type Passes = BTreeMap<(String, String), f64>;
+
+/// Measures scenes of up to that many trees, and writes a picture of each.
+pub fn run(most_trees: u32, folder: &Path) -> Report {
+    let mut report = Report::default();
+    for (name, stand, keys) in SCENES.into_iter().filter(|(_, stand, _)| stand.trees <= most_trees) {
+        match measure(&stand, &folder.join(format!("cost_{}_{}.png", stand.species, stand.trees))) {
+            Ok(cost) => record(&mut report, name, &cost, keys),
+            Err(error) => {
+                eprintln!("{name}: {error}");
+                keys.into_iter().for_each(|key| report.at_most(key, f64::NAN, 0.0, "could not be measured"));
+            }
+        }
+    }
+    report
+}
+
+struct Cost {
+    frame_ms: f64,
+    unshadowed_ms: f64,
+    passes: Passes,
+}
+
+fn measure(stand: &Stand, picture: &Path) -> Result<Cost, String> {
+    let mut app = App::new();
+    let settings = WgpuSettings {
+        features: WgpuSettings::default().features | WgpuFeatures::PIPELINE_STATISTICS_QUERY,
+        ..default()
+    };
+    let render = RenderPlugin {
+        render_creation: RenderCreation::Automatic(Box::new(settings)),
+        synchronous_pipeline_compilation: true,
+        ..default()
+    };
+    app.add_plugins((capture::headless_engine(None).set(render), WindwoodPlugins, RenderDiagnosticsPlugin));
+    capture::begin(&mut app)?;
+    let camera = if stand.trees == 1 { spawn_tree(&mut app, stand)? } else { grid::spawn_forest(&mut app, stand)? };
+    let target = capture::target(&mut app, SIZE);
+    app.world_mut().entity_mut(camera).insert(capture::camera(&target));
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / 60.0)));
+    let frame_ms = frames_ms(&mut app);
+    let passes = passes(&mut app);
+    capture::save(&capture::capture(&mut app, &target, SIZE)?, picture)?;
+    let world = app.world_mut();
+    world.query::<&mut DirectionalLight>().iter_mut(world).for_each(|mut sun| sun.shadow_maps_enabled = false);
+    let unshadowed_ms = frames_ms(&mut app);
+    Ok(Cost { frame_ms, unshadowed_ms, passes })
+}
+
+/// One tree that fills the picture. Returns a [`Viewpoint`] that becomes the camera.
+fn spawn_tree(app: &mut App, stand: &Stand) -> Result<Entity, String> {
+    let world = app.world_mut();
+    grid::spawn_ground_and_sun(world);
+    let species = world.resource::<AssetServer>().load(format!("species/{}.species.ron", stand.species));
+    world.spawn((Tree::new(species).with_age(stand.age_years).with_seed(1), Transform::default()));
+    let place = Transform::from_xyz(0.0, 5.0, 24.0).looking_at(Vec3::Y * 9.0, Vec3::Y);
+    let viewpoint = world.spawn((Viewpoint, place)).id();
+    let start = Instant::now();
+    while !(app.world().resource::<ActiveSway>().is_ready() && capture::forests_are_drawn(app.world_mut())) {
+        app.update();
+        std::thread::sleep(Duration::from_millis(1));
+        if start.elapsed() > LONGEST_WAIT {
+            return Err(format!("the tree was not ready after {LONGEST_WAIT:?}"));
+        }
+    }
+    Ok(viewpoint)
+}
+
+/// Time of a frame, ms.
+fn frames_ms(app: &mut App) -> f64 {
+    (0..WARM_UP_FRAMES).for_each(|_| capture::step(app));
+    let start = Instant::now();
+    (0..FRAMES).for_each(|_| capture::step(app));
+    start.elapsed().as_secs_f64() * 1e3 / f64::from(FRAMES)
+}
+
+/// The last values of all passes.
+fn passes(app: &mut App) -> Passes {
+    let store = app.world().resource::<DiagnosticsStore>();
+    let of = |diagnostic: &Diagnostic| {
+        let path = diagnostic.path().as_str().strip_prefix("render/")?;
+        let (pass, quantity) = path.rsplit_once('/')?;
+        Some(((pass.to_owned(), quantity.to_owned()), diagnostic.value()?))
+    };
+    store.iter().filter_map(of).collect()
+}
+
+fn record(report: &mut Report, name: &str, cost: &Cost, keys: [&'static str; 4]) {
+    let pixels = f64::from(SIZE.0 * SIZE.1);
+    println!(
+        "  {name}: {:.0} ms, without shadows {:.0} ms, at {}x{}",
+        cost.frame_ms, cost.unshadowed_ms, SIZE.0, SIZE.1
+    );
+    println!(
+        "    {:<44} {:>12} {:>12} {:>12} {:>9} {:>9}",
+        "pass", "vertices", "triangles", "fragments", "a pixel", "ms"
+    );
+    let mut names: Vec<&str> = cost.passes.keys().map(|(pass, _)| pass.as_str()).collect();
+    names.dedup();
+    let value = |pass: &str, quantity: &str| cost.passes.get(&(pass.to_owned(), quantity.to_owned())).copied();
+    for pass in &names {
+        let show = |quantity: &str| value(pass, quantity).map_or_else(String::new, |value| format!("{value:.0}"));
+        let fragments = value(pass, "fragment_shader_invocations");
+        let milliseconds = value(pass, "elapsed_gpu").map_or_else(String::new, |value| format!("{value:.1}"));
+        println!(
+            "    {pass:<44} {:>12} {:>12} {:>12} {:>9} {milliseconds:>9}",
+            show("vertex_shader_invocations"),
+            show("clipper_primitives_out"),
+            show("fragment_shader_invocations"),
+            fragments.map_or_else(String::new, |fragments| format!("{:.2}", fragments / pixels)),
+        );
+    }
+    let sum = |quantity: &str| names.iter().filter_map(|pass| value(pass, quantity)).sum::<f64>();
+    report.record(keys[0], sum("fragment_shader_invocations"), "fragments shaded in all passes but shadows");
+    report.record(keys[1], sum("vertex_shader_invocations"), "vertices shaded in all passes but shadows");
+    report.record(keys[2], cost.frame_ms, "a frame");
+    report.record(keys[3], cost.unshadowed_ms, "a frame without shadows");
+}
