@@ -8,7 +8,8 @@ use bevy::math::{Mat3, Vec2, Vec3};
 use bevy_windwood::{
     dynamics::{
         BeamDynamics, BeamPose, BeamSway, BeamWind, ExactStep, FrequencyClasses, LoadBasis, LoadBasisKind, MeanWind,
-        NO_PARENT, OscillatorGrid, OscillatorState, ResponseTable, TablePlace, TreeInWind, TreePoser,
+        NO_PARENT, OscillatorGrid, OscillatorState, ResponseTable, StandWind, TIP_ANGLE_LIMIT, TablePlace, TreeInWind,
+        TreePoser,
     },
     wind::{LogProfile, cross_flow_pressure},
 };
@@ -30,7 +31,7 @@ fn pose(criterion: &mut Criterion) {
     let columns = wind();
     let basis = basis(&columns);
     let wind = beam_wind();
-    let table = ResponseTable::new(&columns, TIME_STEP_S, &basis, wind.grid);
+    let table = ResponseTable::new(&columns, TIME_STEP_S, &fast_gusts(), &basis, wind.grid);
     let tree_in_wind = TreeInWind { map: basis.map(), wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 };
     let beams = tree();
     let mut group = criterion.benchmark_group("pose");
@@ -91,20 +92,22 @@ fn tables(criterion: &mut Criterion) {
         bencher.iter(|| LoadBasis::new(LoadBasisKind::Principal, black_box(&velocities), cross_flow_pressure));
     });
     criterion.bench_function("response_table/default", |bencher| {
-        let build = |()| ResponseTable::new(black_box(&columns), TIME_STEP_S, &basis, grid);
+        let fast_gusts = fast_gusts();
+        let build = |()| ResponseTable::new(black_box(&columns), TIME_STEP_S, &fast_gusts, &basis, grid);
         bencher.iter_batched(|| (), build, BatchSize::PerIteration);
     });
 }
 
 /// Between two columns.
 fn place(tau_s: f64) -> TablePlace {
-    TablePlace { columns: [2, 3, 4, 5], weights: [-0.1, 0.8, 0.4, -0.1], tau_s }
+    TablePlace { columns: [2, 3, 4, 5], weights: [-0.1, 0.8, 0.4, -0.1], tau_s, fast_tau_s: tau_s + 3.3 }
 }
 
 /// The mean wind of [`wind`], and the oscillators of its table.
 fn beam_wind() -> BeamWind {
     let mean = MeanWind::new(&LogProfile::from_reference(8.0, 0.1, 0.0), 10.0);
-    BeamWind { mean, grid: OscillatorGrid::new(FrequencyClasses::default(), 0.05, 8.0, 10.0) }
+    let grid = OscillatorGrid::new(FrequencyClasses::default(), 0.05, 8.0, 10.0);
+    BeamWind { stand: StandWind::open(mean), grid }
 }
 
 /// A branch without the shared table: its own modes 1 to 3 in both transverse directions, under the quadratic drag of the
@@ -169,6 +172,15 @@ fn wind() -> Vec<Vec<Vec3>> {
     (0..COLUMNS).map(|_| column()).collect()
 }
 
+/// A short period of gusts of 3 to 14 Hz.
+fn fast_gusts() -> Vec<Vec3> {
+    let gust = |step: u32| {
+        let angle = std::f32::consts::TAU * step as f32 / 1024.0;
+        0.3 * Vec3::new((24.0 * angle).sin() + (71.0 * angle).cos(), (43.0 * angle).sin(), (111.0 * angle).cos())
+    };
+    (0..1024).map(gust).collect()
+}
+
 /// A tree in which every beam but the first is attached to one of those before it.
 fn tree() -> Vec<BeamDynamics> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(2);
@@ -178,6 +190,7 @@ fn tree() -> Vec<BeamDynamics> {
         direction: Vec3::Y,
         attach: 0.0,
         parent: NO_PARENT,
+        angle_limit_rad: TIP_ANGLE_LIMIT,
         in_leaf: sway(0.001, 6.0),
         bare: sway(0.001, 6.0),
     }];
@@ -186,13 +199,14 @@ fn tree() -> Vec<BeamDynamics> {
         let attach = random.random_range(0.3..1.0f32);
         let azimuth = random.random_range(0.0..std::f32::consts::TAU);
         let on = &beams[parent];
-        let class = random.random_range(8.0..23.0);
+        let class = random.random_range(8.0..30.0);
         beams.push(BeamDynamics {
             base: on.base + on.length_m * attach * on.direction,
             length_m: 0.6 * on.length_m,
             direction: Vec3::new(azimuth.cos(), 0.8, azimuth.sin()).normalize(),
             attach,
             parent: parent as u32,
+            angle_limit_rad: TIP_ANGLE_LIMIT,
             in_leaf: sway(0.003, class),
             bare: sway(0.003, class),
         });

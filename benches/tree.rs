@@ -61,7 +61,7 @@ fn textures(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("texture");
     group.sample_size(20);
     group.bench_function("bark", |bencher| bencher.iter(|| bark_textures(black_box(&oak.wood.bark), 1)));
-    group.bench_function("leaf", |bencher| bencher.iter(|| leaf_textures(black_box(&oak.foliage), 1)));
+    group.bench_function("leaf", |bencher| bencher.iter(|| leaf_textures(black_box(&oak.foliage), &oak.wood.green, 1)));
     group.finish();
 }
 

@@ -101,10 +101,10 @@ pub mod prelude {
         fire::{Fire, FireLook, FireShape},
         forest::{Forest, ForestGround, ForestSettings},
         grass::{GrassGround, GrassLook, GrassPatch, GrassResponse, Sward, Tuft},
-        sway::{ActiveSway, SwaySettings},
+        sway::{ActiveSway, InCanopy, SwaySettings},
         terrain::{GroundLook, Terrain, TerrainSettings},
         tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Season, Species, Tree, TreeBeams, TreeLeaves},
-        wind::{ActiveWind, Wind, WindCell, WindClock},
+        wind::{ActiveWind, Canopy, Wind, WindCell, WindClock},
     };
 }
 

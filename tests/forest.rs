@@ -304,3 +304,36 @@ fn the_forest_tells_who_stands_where() {
     store.within(at, 40.0, |_| count += 1);
     assert!(count.abs_diff(trees.iter().filter(|tree| tree.xz().distance(at) <= 40.0).count()) <= 1);
 }
+
+#[test]
+fn trees_of_a_wood_stand_in_its_canopy_and_the_first_rows_shelter_the_others() {
+    let (mut app, viewer) = forest_app();
+    let shape = Shape::Rectangle { min_m: [0.0, -300.0], max_m: [600.0, 300.0] };
+    let area = Area { shape, density_per_ha: 80.0, ..default() };
+    let wood = ForestPlan { cell_m: 32.0, areas: vec![area], ..default() };
+    let plan = app.world_mut().resource_mut::<Assets<ForestPlan>>().add(wood);
+    let forest = app.world_mut().query_filtered::<Entity, With<Forest>>().single(app.world()).unwrap();
+    app.world_mut().entity_mut(forest).insert(Forest::new(plan));
+    look_from(&mut app, viewer, Vec2::new(40.0, 0.0));
+    let stands = |app: &mut App| {
+        let world = app.world_mut();
+        let all = world.query_filtered::<(), With<Tree>>().iter(world).count();
+        let mut trees = world.query_filtered::<(&Transform, &InCanopy), With<Tree>>();
+        let found: Vec<(Vec3, Canopy)> = trees.iter(world).map(|(at, canopy)| (at.translation, canopy.0)).collect();
+        (found.len() == all).then_some(found)
+    };
+    let found = (0..2000).find_map(|_| {
+        app.update();
+        std::thread::sleep(std::time::Duration::from_millis(1));
+        stands(&mut app)
+    });
+    let found = found.expect("every tree gets its canopy");
+    let open_to_x = |from_m: f32, to_m: f32| {
+        let rows = found.iter().filter(|(at, _)| (from_m..to_m).contains(&at.x));
+        let open: Vec<f32> = rows.map(|(_, canopy)| canopy.exposure[0]).collect();
+        open.iter().sum::<f32>() / open.len() as f32
+    };
+    let [first, second, inner] = [(0.0, 10.0), (20.0, 40.0), (80.0, 120.0)].map(|(from, to)| open_to_x(from, to));
+    assert!(first > 0.7 && second < first - 0.1 && inner < 0.2, "{first}, {second}, {inner}");
+    assert!(found.iter().all(|(_, canopy)| (5.0..30.0).contains(&canopy.height_m)));
+}

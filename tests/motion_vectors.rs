@@ -133,8 +133,8 @@ struct Agreement {
 }
 
 fn compare(sway: &ActiveSway, model: &TreeModel, clip: Mat4, clock: WindClock, read: &[Vec2]) -> Agreement {
-    let now = cpu_poses(sway, model, &Transform::IDENTITY, clock.time_s);
-    let before = cpu_poses(sway, model, &Transform::IDENTITY, clock.previous_s);
+    let now = cpu_poses(sway, model, &Transform::IDENTITY, &Canopy::default(), clock.time_s);
+    let before = cpu_poses(sway, model, &Transform::IDENTITY, &Canopy::default(), clock.previous_s);
     let project = |point: Vec3| {
         let ndc = clip.project_point3(point);
         Vec2::new(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y)

@@ -23,14 +23,16 @@ fn plan() -> ForestPlan {
     ForestPlan { cell_m: 32.0, areas: vec![Area { shape, ..default() }], ..default() }
 }
 
-/// An app with a forest on that ground, and one who looks at it from the origin. Its species need not exist.
+/// An app with a forest on that ground, and one who looks at it from the origin. Its species do not exist: nothing is asked about the
+/// wind among its trees.
 fn forest_app(ground: Arc<CountingGround>) -> (App, Entity) {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default(), WindwoodMinimalPlugins));
     app.finish();
     app.cleanup();
     let plan = app.world_mut().resource_mut::<Assets<ForestPlan>>().add(plan());
-    let settings = ForestSettings { trees_to_m: 90.0, far_to_m: 400.0, ..default() };
+    let species_folder = "none".into();
+    let settings = ForestSettings { trees_to_m: 90.0, far_to_m: 400.0, species_folder, ..default() };
     app.world_mut().spawn(Viewpoint);
     let forest = app.world_mut().spawn((Forest::new(plan), settings, ForestGround(ground))).id();
     app.update();

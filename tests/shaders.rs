@@ -24,7 +24,7 @@ fn mode_shape_is_equal_in_rust_and_wesl() {
 fn value(text: &str, name: &str) -> f32 {
     let line = text.lines().find(|line| line.contains(&format!("const {name}:"))).expect("it is there");
     let value = line.split('=').nth(1).expect("it has a value").trim().trim_end_matches(';').trim_end_matches('u');
-    value.parse().expect("a number")
+    value.replace('_', "").parse().expect("a number")
 }
 
 #[test]
@@ -44,5 +44,34 @@ fn constants_of_the_sway_are_equal_in_rust_and_wesl() {
         (include_str!("../src/dynamics/oscillator_grid.rs"), ["SIZES", "DAMPINGS"]),
     ] {
         names.into_iter().for_each(|name| assert_eq!(value(code, name), value(shader, name), "{name}"));
+    }
+    let (code, shader) = (include_str!("../src/sway/response.rs"), include_str!("../src/render/shaders/wind.wesl"));
+    assert_eq!(value(code, "FAST_PERIODS_A_METRE"), value(shader, "FAST_PERIODS_A_METRE"));
+}
+
+#[test]
+fn constants_of_the_wind_in_a_stand_are_equal_in_rust_and_wesl() {
+    let shader = include_str!("../src/render/shaders/stand_wind.wesl");
+    let stand_wind: &[&str] = &[
+        "BLENDING_HEIGHT_M",
+        "BLENDING_HEIGHTS",
+        "GUSTS_AT_TOPS",
+        "GUSTS_IN_OPEN",
+        "GUST_ATTENUATION",
+        "CONVECTION",
+        "MEAN_LOAD_VARIANCE",
+        "GUST_LOAD_VARIANCE",
+        "PEAK_GUSTS",
+        "LEAST_DEPTH_M",
+        "LOW_SHARE",
+        "LEAST_SHARE",
+    ];
+    let canopy: &[&str] = &["SUBLAYER", "MOST_HEIGHT_M", "MOST_SPEED_BY_FRICTION", "MOST_ATTENUATION"];
+    for (code, names) in [
+        (include_str!("../src/dynamics/stand_wind.rs"), stand_wind),
+        (include_str!("../src/wind/canopy.rs"), canopy),
+        (include_str!("../src/wind/profile.rs"), &["VON_KARMAN"]),
+    ] {
+        names.iter().for_each(|name| assert_eq!(value(code, name), value(shader, name), "{name}"));
     }
 }

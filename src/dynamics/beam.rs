@@ -3,6 +3,7 @@
 use super::{
     mean_wind::MeanWind,
     oscillator_grid::{OscillatorGrid, RowWeights},
+    stand_wind::{StandLoads, StandWind},
 };
 use bevy::math::{FloatExt, Vec3};
 
@@ -29,6 +30,9 @@ pub struct BeamDynamics {
     pub attach: f32,
     /// Index of the parent, which must be lower than the beam's own, or [`NO_PARENT`].
     pub parent: u32,
+    /// Angle that its tip approaches in an ever stronger wind, in radians: [`TIP_ANGLE_LIMIT`](super::TIP_ANGLE_LIMIT) for a
+    /// branch of one beam; beams that continue one another share it, by how far they bend.
+    pub angle_limit_rad: f32,
     /// While the tree is in leaf.
     pub in_leaf: BeamSway,
     /// While it is bare. Evergreens never are.
@@ -74,8 +78,8 @@ pub struct BeamSway {
 /// A wind and its table, as beams feel them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeamWind {
-    /// The mean wind.
-    pub mean: MeanWind,
+    /// The wind at the tree.
+    pub stand: StandWind,
     /// The oscillators of the table.
     pub grid: OscillatorGrid,
 }
@@ -91,10 +95,10 @@ pub struct BeamAnswer {
     pub read: RowWeights,
 }
 
-/// The mean wind at a beam's load, and what that does to the beam.
+/// The wind at a beam's load, and what that does to the beam.
 struct LocalWind {
-    /// Mean speed over that of the table's wind.
-    ratio: f32,
+    /// Loads by those of the table's wind.
+    loads: StandLoads,
     /// Drag coefficient over that at [`DRAG_SPEED_M_S`]: crowns fold away in the wind.
     folded: f32,
     /// Derivative of the load, which grows as `U^(2 + V)`, by that of `U^2`.
@@ -106,18 +110,19 @@ impl BeamSway {
     /// The answer of a beam of an instance of some scale: that makes a tree sway more slowly and reach higher winds, and
     /// leaves the angles as they are (stiffness grows with its fourth power, as do the load's moments).
     ///
-    /// With `r` the mean speed at the load's height over that of the table's wind, mean loads go with `r^2`, and gusts,
-    /// whose strength does not change with height, with `r`: a gust `u'` in a wind `U` adds `2 U u'` to the pressure.
+    /// With `r` the mean speed at the load's height over that of the table's wind, mean loads go with `r^2` in the open, and
+    /// gusts, whose strength does not change with height, with `r`: a gust `u'` in a wind `U` adds `2 U u'` to the pressure.
+    /// Between other trees both are less: [`StandWind`].
     #[must_use]
     pub fn answer(&self, wind: &BeamWind, scale: f32) -> BeamAnswer {
-        let LocalWind { ratio, folded, gusts, damping_ratio } = self.local_wind(wind, scale);
+        let LocalWind { loads, folded, gusts, damping_ratio } = self.local_wind(wind, scale);
         let class = self.class + wind.grid.classes.shift(scale);
         // The grid's sizes are for the table's wind.
-        let averaging_speed_m_s = self.averaging_speed_m_s / ratio;
+        let averaging_speed_m_s = self.averaging_speed_m_s / loads.convection;
         let finite = |gain: f32| if gain.is_finite() { gain } else { 0.0 };
         BeamAnswer {
-            mean_gain: finite(self.gain * folded * ratio * ratio),
-            gust_gain: finite(self.gain * gusts * ratio),
+            mean_gain: finite(self.gain * folded * loads.mean),
+            gust_gain: finite(self.gain * gusts * loads.gusts),
             read: wind.grid.weights(class, averaging_speed_m_s, damping_ratio),
         }
     }
@@ -129,13 +134,13 @@ impl BeamSway {
     }
 
     fn local_wind(&self, wind: &BeamWind, scale: f32) -> LocalWind {
-        let ratio = wind.mean.ratio(self.load_height_m * scale);
-        let speed_m_s = ratio * wind.mean.speed_m_s;
+        let loads = wind.stand.loads(self.load_height_m * scale);
+        let speed_m_s = loads.mean.sqrt() * wind.stand.table_speed_m_s();
         let folding_m_s = if speed_m_s > FOLDING_SPEED_M_S { speed_m_s } else { FOLDING_SPEED_M_S };
         let folded = (folding_m_s / DRAG_SPEED_M_S).powf(self.drag_exponent);
         let gusts = (1.0 + 0.5 * self.drag_exponent) * folded;
         let damping_ratio = wind.grid.damping_ratios[0] + gusts * speed_m_s * self.drag_damping_s_m;
-        LocalWind { ratio, folded, gusts, damping_ratio }
+        LocalWind { loads, folded, gusts, damping_ratio }
     }
 
     /// Tip deflection by length in a steady wind over open country, by its pressure `|u| u` at 10 m, s^2/m^2: for pictures
@@ -183,7 +188,8 @@ mod tests {
 
     fn wind(speed_m_s: f32) -> BeamWind {
         let mean = MeanWind::new(&LogProfile::from_reference(speed_m_s, 0.1, 0.0), 10.0);
-        BeamWind { mean, grid: OscillatorGrid::new(FrequencyClasses::default(), 0.05, speed_m_s, 10.0) }
+        let grid = OscillatorGrid::new(FrequencyClasses::default(), 0.05, speed_m_s, 10.0);
+        BeamWind { stand: StandWind::open(mean), grid }
     }
 
     /// Loads grow with the speed to the power 2 + V, as the deflection in a steady wind does.

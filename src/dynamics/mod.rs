@@ -5,10 +5,12 @@
 //!
 //! 1. `load_basis`: four signals stand for the wind's load on a beam of *any* direction, in place of the three orthogonal
 //!    beams of (25). `direction_map` holds the coefficients of each direction.
-//! 2. `oscillator_grid`: a few hundred oscillators that stand for those of all beams: `frequency_classes`, rounded to some
-//!    twenty, sizes of what a beam carries, which average gusts (`admittance`), and damping ratios.
-//! 3. `response`: the responses of these oscillators (21) to the signals, as one table.
-//! 4. `beam`: how a beam answers a wind: by how much at its height (`mean_wind`), and as which oscillators.
+//! 2. `oscillator_grid`: some hundred oscillators that stand for those of all beams: `frequency_classes`, rounded to some
+//!    thirty, sizes of what a beam carries, which average gusts (`admittance`), and damping ratios.
+//! 3. `response`: the responses of these oscillators (21) to the signals, as one table, by `periodic_filter`. Beams above 3.6 Hz
+//!    follow slow gusts, and ring in fast ones, which all places share. `table_place` reads it.
+//! 4. `beam`: how a beam answers a wind: by how much at its height (`mean_wind`) and in its stand (`stand_wind`), and as which
+//!    oscillators.
 //! 5. `pose`: a tree's bent beams, each attached to its parent, from the table.
 //! 6. `leaf`: leaves that turn into the wind and flutter (26).
 //! 7. `exact_step`: one oscillator, step by step, for motion that is not periodic. Later versions use it for trees that a
@@ -32,8 +34,11 @@ pub(crate) mod mean_wind;
 #[cfg(test)]
 mod oracle;
 pub(crate) mod oscillator_grid;
+mod periodic_filter;
 pub(crate) mod pose;
 pub(crate) mod response;
+pub(crate) mod stand_wind;
+pub(crate) mod table_place;
 
 pub use admittance::{admittance, equivalent_size_m};
 pub use beam::{BeamAnswer, BeamDynamics, BeamSway, BeamWind, DRAG_SPEED_M_S, NO_PARENT};
@@ -45,4 +50,6 @@ pub use load_basis::{LoadBasis, LoadBasisKind};
 pub use mean_wind::MeanWind;
 pub use oscillator_grid::{OscillatorGrid, RowWeights};
 pub use pose::{BeamPose, MODE_SHAPE, SLOPE_TIP, TIP_ANGLE_LIMIT, TreeInWind, TreePoser};
-pub use response::{ResponseTable, TablePlace};
+pub use response::ResponseTable;
+pub use stand_wind::{Speeds, StandWind};
+pub use table_place::TablePlace;

@@ -15,8 +15,26 @@
 //!
 //! Both weights change with the wind and the season, not with time. A frequency between two classes is not mixed: weakly
 //! damped oscillators of neighbouring frequencies beat against each other.
+//!
+//! # Fast beams
+//!
+//! Beams of a [fast class](FrequencyClasses), above 3.6 Hz, would take samples that a whole wind's period makes too many of. Their
+//! motion is put together from two bands, which meet at [a crossover](GustBands) of some 2 Hz:
+//!
+//! ```text
+//! R = sum_i s_i L(x_i) + |J(x)| sum_j d_j H(f, xi_j)
+//! ```
+//!
+//! - *Low band* `L`: below the crossover the beam follows its load without inertia, with the admittance of its size. What inertia
+//!   would add there, `1 / (1 - (f/f_n)^2)`, is 34% at the crossover for a beam of 4 Hz. There the gusts are weak: 3% of the motion
+//!   (at a damping ratio of 0.05 to 0.1), 1% at 7 Hz, and less than 1% of its size.
+//! - *High band* `H`: above it an oscillator in fast gusts, which are the same everywhere but for the time at which they
+//!   pass. All frequencies are felt with the admittance `|J|` at the natural one, where most of that motion is.
+//!
+//! Beams beyond the last fast class follow the high band, too, without inertia.
 
 use super::{admittance::admittance, frequency_classes::FrequencyClasses};
+use crate::wind::GustBands;
 use rustfft::num_complex::Complex;
 
 /// Sizes in the table.
@@ -46,20 +64,24 @@ pub struct OscillatorGrid {
     pub speed_m_s: f32,
     /// How fast the gusts of that wind lose their coherence with distance: `C` of [`admittance`].
     pub decay: f32,
+    /// `|J|` at the natural frequency, for each size.
+    pub(crate) natural_admittances: [f32; SIZES],
 }
 
 /// What a beam reads of a table: four of its rows with their weights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RowWeights {
-    /// Rows, of two sizes and for each of the two damping ratios.
+    /// Rows: of two sizes and for each of the two damping ratios; for a fast beam of two sizes in the low band, then of the two damping
+    /// ratios in the high one.
     pub rows: [u32; 4],
-    /// Weights of these rows; they add up to 1.
+    /// Weights of these rows. They add up to 1; for a fast beam those of the low band do, and those of the high band to `|J|`.
     pub weights: [f32; 4],
 }
 
 /// Number of rows of a grid of these classes.
 pub(crate) fn row_count(classes: &FrequencyClasses) -> usize {
-    classes.quasi_static() * SIZES * DAMPINGS + SIZES
+    let (slow, fast) = (classes.first_fast(), classes.quasi_static() - classes.first_fast());
+    slow * SIZES * DAMPINGS + SIZES + fast * DAMPINGS + 1
 }
 
 impl OscillatorGrid {
@@ -72,6 +94,7 @@ impl OscillatorGrid {
             damping_ratios: [least, least + DAMPING_SPAN],
             speed_m_s: speed_m_s.max(LEAST_SPEED_M_S),
             decay,
+            natural_admittances: std::array::from_fn(|size| admittance(reduced_size(size), f64::from(decay)) as f32),
         }
     }
 
@@ -81,14 +104,20 @@ impl OscillatorGrid {
         row_count(&self.classes)
     }
 
-    /// The row of an oscillator. Damping makes no difference to the quasi-static class.
+    /// The row of an oscillator of a slow class.
     pub(crate) fn row(&self, class: usize, size: usize, damping: usize) -> usize {
-        let quasi_static = self.classes.quasi_static();
-        if class < quasi_static {
-            (class * SIZES + size) * DAMPINGS + damping
-        } else {
-            quasi_static * SIZES * DAMPINGS + size
-        }
+        (class * SIZES + size) * DAMPINGS + damping
+    }
+
+    /// The row of fast beams of some size in the low band.
+    pub(crate) fn low_row(&self, size: usize) -> usize {
+        self.classes.first_fast() * SIZES * DAMPINGS + size
+    }
+
+    /// The row of a fast class in the high band. Damping makes no difference to the quasi-static class.
+    pub(crate) fn high_row(&self, class: usize, damping: usize) -> usize {
+        let damping = if class < self.classes.quasi_static() { damping } else { 0 };
+        self.low_row(SIZES) + (class - self.classes.first_fast()) * DAMPINGS + damping
     }
 
     /// The rows of a beam: its natural frequency as a [coordinate](FrequencyClasses::coordinate), its frequency times its
@@ -96,23 +125,45 @@ impl OscillatorGrid {
     #[must_use]
     pub fn weights(&self, class: f32, averaging_speed_m_s: f32, damping_ratio: f32) -> RowWeights {
         let nearest = self.classes.nearest(class);
-        // The row's own frequency is not quite the beam's. The quasi-static class stands for its lowest frequency.
-        let rounding = (nearest as f32 - class) * self.classes.ratio.ln();
+        let first_fast = self.classes.first_fast();
+        // The row's own frequency is not quite the beam's. All fast beams share the sizes of the first fast class.
+        let rounding = (nearest.min(first_fast) as f32 - class) * self.classes.ratio.ln();
+        let (first, larger) = self.size_mix(averaging_speed_m_s, rounding);
+        let damped = self.damped_share(damping_ratio);
+        if nearest < first_fast {
+            let row = |size, damping| self.row(nearest, first + size, damping) as u32;
+            return RowWeights {
+                rows: [row(0, 0), row(0, 1), row(1, 0), row(1, 1)],
+                weights: [
+                    (1.0 - larger) * (1.0 - damped),
+                    (1.0 - larger) * damped,
+                    larger * (1.0 - damped),
+                    larger * damped,
+                ],
+            };
+        }
+        let felt = self.natural_admittance(averaging_speed_m_s);
+        let low = self.low_row(first);
+        let rows = [low, low + 1, self.high_row(nearest, 0), self.high_row(nearest, 1)];
+        RowWeights {
+            rows: rows.map(|row| row as u32),
+            weights: [1.0 - larger, larger, felt * (1.0 - damped), felt * damped],
+        }
+    }
+
+    /// The smaller of the two sizes about a beam's own, and the weight of the larger. `rounding` is what is added to the logarithm
+    /// of its reduced size.
+    fn size_mix(&self, averaging_speed_m_s: f32, rounding: f32) -> (usize, f32) {
         let size = ((averaging_speed_m_s / (LEAST_SIZE * self.speed_m_s)).ln() + rounding) / SIZE_RATIO.ln();
         let size = if size > 0.0 { size.min((SIZES - 1) as f32) } else { 0.0 };
         let first = (size as usize).min(SIZES - 2);
-        let larger = size - first as f32;
-        let damped = self.damped_share(damping_ratio);
-        let row = |size, damping| self.row(nearest, first + size, damping) as u32;
-        RowWeights {
-            rows: [row(0, 0), row(0, 1), row(1, 0), row(1, 1)],
-            weights: [
-                (1.0 - larger) * (1.0 - damped),
-                (1.0 - larger) * damped,
-                larger * (1.0 - damped),
-                larger * damped,
-            ],
-        }
+        (first, size - first as f32)
+    }
+
+    /// `|J|` of a beam at its natural frequency, mixed as sizes are.
+    fn natural_admittance(&self, averaging_speed_m_s: f32) -> f32 {
+        let (first, larger) = self.size_mix(averaging_speed_m_s, 0.0);
+        self.natural_admittances[first] * (1.0 - larger) + self.natural_admittances[first + 1] * larger
     }
 
     /// Coefficients `a`, `b`, `c` with which the share of the greater damping ratio is `a - sqrt(b + c / xi)`: the
@@ -133,10 +184,9 @@ impl OscillatorGrid {
         (a - (b + c / ratio).max(0.0).sqrt()).clamp(0.0, 1.0)
     }
 
-    /// Admittance of the rows of a class and a size, at the bins of a period from 0 up.
+    /// Admittance of the rows of a class and a size, at the bins of a period from 0 up. Of the first fast class: that of the low band.
     pub(crate) fn admittances(&self, class: usize, size: usize, bin_hz: f64) -> impl Iterator<Item = f64> + use<> {
-        let reduced_size = f64::from(LEAST_SIZE * SIZE_RATIO.powi(size as i32));
-        let step = reduced_size * bin_hz / self.class_hz(class);
+        let step = reduced_size(size) * bin_hz / self.class_hz(class);
         let decay = f64::from(self.decay);
         (0..).map(move |bin| admittance(f64::from(bin) * step, decay))
     }
@@ -166,11 +216,33 @@ impl OscillatorGrid {
     /// Samples that a row of a class needs for a period, a power of two: seven for each period of its natural frequency, and
     /// at most `available`. The cubic through them loses 1% of an oscillation at that frequency, and what is faster is weak.
     pub(crate) fn samples(&self, class: usize, period_s: f64, available: usize) -> usize {
-        const PER_PERIOD: f64 = 7.0;
-        let needed = (PER_PERIOD * self.class_hz(class) * period_s).ceil() as usize;
-        let fits = needed.max(1).next_power_of_two();
-        // A period that is not a power of two of samples is not thinned.
-        if class < self.classes.quasi_static() && available.is_power_of_two() { fits.min(available) } else { available }
+        const PER_CYCLE: f64 = 7.0;
+        if class < self.classes.quasi_static() {
+            thinned(PER_CYCLE * self.class_hz(class) * period_s, available)
+        } else {
+            available
+        }
+    }
+
+    /// Samples that a row of the low band needs for a period, likewise: at the crossover the cubic loses 7%, of the whole band less
+    /// than 0.2% of the power, since its gusts are the weaker the faster they are.
+    pub(crate) fn low_samples(&self, period_s: f64, available: usize) -> usize {
+        const PER_CYCLE: f64 = 3.7;
+        thinned(PER_CYCLE * GustBands::of_period(period_s).crossover_hz * period_s, available)
+    }
+}
+
+fn reduced_size(size: usize) -> f64 {
+    f64::from(LEAST_SIZE * SIZE_RATIO.powi(size as i32))
+}
+
+/// A power of two of samples that is at least `needed`, and at most `available`.
+fn thinned(needed: f64, available: usize) -> usize {
+    // A period that is not a power of two of samples is not thinned.
+    if available.is_power_of_two() && needed < available as f64 {
+        (needed.ceil() as usize).max(1).next_power_of_two()
+    } else {
+        available
     }
 }
 

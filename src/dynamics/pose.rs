@@ -8,6 +8,8 @@
 //! Theta = Theta_free / sqrt(1 + |Theta_free|^2 / limit^2)
 //! ```
 //!
+//! The limit is that of a whole branch, of which each of its beams has its share: so no stem is bent past the wind.
+//!
 //! The axis at `s` is turned by `h(s) Theta`, with `h = phi_1' / phi_1'(1)` the slope of the mode (18). Its place
 //! follows by integrating the turned direction along the beam, which keeps every length. With
 //! `H_k(s) = int_0^s h^k` and `T = |Theta|^2`, the Taylor series of cosine and sine give
@@ -32,7 +34,7 @@ use bevy::math::{Mat3, Quat, Vec3, Vec3A, Vec4};
 /// `phi_1'(1)`, the slope at the tip of the first mode with a tip of 1: the tip's angle for a deflection of one length.
 pub const SLOPE_TIP: f32 = 1.376_505_4;
 
-/// The angle in radians that a beam's tip approaches in an ever stronger wind (63 degrees).
+/// The angle in radians that the tip of a branch approaches in an ever stronger wind (63 degrees).
 pub const TIP_ANGLE_LIMIT: f32 = 1.1;
 
 /// `h(s) = s B_0(s)` and `H_k(s) = s^(k+1) B_k(s)`, k = 1..6, with `B = B[0] + B[1] s + B[2] s^2 + B[3] s^3`: minimax
@@ -47,8 +49,12 @@ pub const MODE_SHAPE: [[f32; 4]; 7] = [
     [26.275_35, -70.269_42, 65.276_05, -20.841_745],
 ];
 
-/// Free angles beyond this, in radians and by component, are cut off before they overflow.
-const FREE_ANGLE_BOUND: f32 = 1e6;
+/// The least limit of a tip's angle, in radians: a beam without one is as good as rigid.
+const LEAST_ANGLE_LIMIT_RAD: f32 = 1e-6;
+
+/// Free angles beyond this, in radians and by component, are cut off before their squares overflow. Nothing smaller is cut, for that would
+/// turn the bend out of the plane across the beam.
+const FREE_ANGLE_BOUND: f32 = 1e18;
 
 /// How a beam is bent, and what its ancestors do to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,11 +158,11 @@ fn quat_from_half_vector(half: Vec3A) -> Quat {
     Quat::from_xyzw(axis.x, axis.y, axis.z, cosine * inverse_norm)
 }
 
-/// `Theta` from `Theta_free`: the same direction, but never beyond [`TIP_ANGLE_LIMIT`].
+/// `Theta` from `Theta_free`: the same direction, but never beyond the limit.
 #[inline]
-fn saturate(free: Vec3A) -> Vec3A {
+fn saturate(free: Vec3A, limit_rad: f32) -> Vec3A {
     let bounded = free.clamp(Vec3A::splat(-FREE_ANGLE_BOUND), Vec3A::splat(FREE_ANGLE_BOUND));
-    bounded / (1.0 + bounded.length_squared() * (1.0 / (TIP_ANGLE_LIMIT * TIP_ANGLE_LIMIT))).sqrt()
+    bounded * (limit_rad / (limit_rad * limit_rad + bounded.length_squared()).sqrt())
 }
 
 /// One tree's beams, prepared for one wind: what does not change from frame to frame.
@@ -178,6 +184,7 @@ struct PreparedBeam {
     /// Of the rows in `TreePoser::rows`.
     read: RowWeights,
     parent: u32,
+    angle_limit_rad: f32,
 }
 
 /// What the poses of a tree in one wind depend on beside its beams.
@@ -221,6 +228,7 @@ impl TreePoser {
                 attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
                 read: answer.read,
                 parent: if parent.is_some() { beam.parent } else { NO_PARENT },
+                angle_limit_rad: beam.angle_limit_rad.max(LEAST_ANGLE_LIMIT_RAD),
             }
         }));
         self.find_rows(tree.wind.grid.rows());
@@ -257,6 +265,7 @@ impl TreePoser {
                 attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
                 read: RowWeights::default(),
                 parent: if parent.is_some() { beam.parent } else { NO_PARENT },
+                angle_limit_rad: beam.angle_limit_rad.max(LEAST_ANGLE_LIMIT_RAD),
             }
         });
         Self { beams: prepared.collect(), ..Self::default() }
@@ -283,7 +292,7 @@ impl TreePoser {
     /// Poses all beams for given free tip angles, one a beam.
     pub(crate) fn pose_free(&self, free: &[Vec3A], out: &mut [BeamPose]) {
         for (index, (beam, free)) in self.beams.iter().zip(free).enumerate().take(out.len()) {
-            out[index] = beam.pose(saturate(*free), out);
+            out[index] = beam.pose(saturate(*free, beam.angle_limit_rad), out);
         }
     }
 
@@ -292,7 +301,8 @@ impl TreePoser {
     /// wind. Beams beyond the length of `out` are left out.
     pub fn pose(&self, responses: &[Vec4], out: &mut [BeamPose]) {
         for (index, beam) in self.beams.iter().enumerate().take(out.len()) {
-            out[index] = beam.pose(saturate(beam.free_angle(response_of(beam, responses))), out);
+            let free = beam.free_angle(response_of(beam, responses));
+            out[index] = beam.pose(saturate(free, beam.angle_limit_rad), out);
         }
     }
 }

@@ -6,6 +6,7 @@ use super::{
     near::{CellTask, NearTrees},
     planted_tile::{PlantedTile, cells_of_tile},
     reach::{known_m, tile_stream},
+    stand::Stand,
 };
 #[cfg(feature = "render")]
 use crate::render::{impostors::near_mask::MaskRange, instances::components::HasImpostor};
@@ -48,6 +49,9 @@ pub struct ForestCells {
     #[cfg(feature = "render")]
     for_impostors: Option<Vec<(IVec2, Arc<PlantedTile>)>>,
     pub(super) near: NearTrees,
+    /// The wind among its trees, once its species are known; and how often it was another.
+    stand: Option<Arc<Stand>>,
+    stand_generation: u64,
     /// From where on impostors stand for its trees, m; none until they are drawn.
     #[cfg(feature = "render")]
     pub(super) impostors_from_m: Option<f32>,
@@ -92,6 +96,8 @@ impl ForestCells {
             near: NearTrees::new(&settings, cell_m, tile_cells, planter.cells())?,
             planter: Arc::new(planter),
             ground,
+            stand: None,
+            stand_generation: 0,
             species,
             settings,
             orders: Orders::default(),
@@ -123,6 +129,8 @@ impl ForestCells {
                 self.for_impostors = before.for_impostors.take();
             }
         }
+        // Trees that stay have the stand of the plan before until this one's is worked out.
+        self.stand_generation = before.stand_generation;
         // Where impostors have come or gone, trees have to be others.
         if (before.settings.far_to_m > 0.0) != (self.settings.far_to_m > 0.0) {
             return before.near.entities().collect();
@@ -162,6 +170,26 @@ impl ForestCells {
     #[must_use]
     pub fn species(&self) -> &[Handle<Species>] {
         &self.species
+    }
+
+    /// The plan and the ground, for what is worked out in the background.
+    pub(super) fn planting(&self) -> (Arc<Planter>, Arc<dyn Ground>) {
+        (self.planter.clone(), self.ground.clone())
+    }
+
+    /// The wind among its trees; none until its species are known.
+    pub(super) fn stand(&self) -> Option<&Arc<Stand>> {
+        self.stand.as_ref()
+    }
+
+    /// Grows whenever the stand is another.
+    pub(super) fn stand_generation(&self) -> u64 {
+        self.stand_generation
+    }
+
+    pub(super) fn set_stand(&mut self, stand: Stand) {
+        self.stand = Some(Arc::new(stand));
+        self.stand_generation += 1;
     }
 
     pub(super) fn settings(&self) -> &ForestSettings {

@@ -8,6 +8,8 @@
 //! - `near` and `stream_trees` spawn the plants of near cells as [`Tree`](crate::tree::Tree)s, a few a frame. What stands where follows from
 //!   the plan alone, in whatever order cells come. When the plan changes, trees that both plans have stay.
 //! - `near_services` gives cells a wind of their own and the nearest trees beams and leaves as entities, where that is asked for.
+//! - `stand` knows how high and dense the trees about a place are, and how open it is, for the wind among them; `stand_species` makes it
+//!   ready, `cell_canopies` works it out for a cell, `give_canopies` gives it to near trees.
 //! - `missing_species` tells which species of a plan cannot be loaded.
 //! - With the feature `render`, `impostors` draws the trees beyond, a tile of cells at a time.
 //! - With it, too, `cull` hides near cells out of view, `layers` gives trees and impostors the render layers of their forest, and `diagnose`
@@ -15,6 +17,7 @@
 //! - [`PlanCover`] tells the ground where the woods are, so that they are seen beyond the last tree.
 
 mod begin;
+mod cell_canopies;
 mod cells;
 mod components;
 mod cover;
@@ -23,6 +26,7 @@ mod cull;
 #[cfg(feature = "render")]
 mod diagnose;
 mod extent;
+mod give_canopies;
 #[cfg(feature = "render")]
 mod impostors;
 #[cfg(feature = "render")]
@@ -34,6 +38,8 @@ mod near_services;
 mod planted_tile;
 mod plugin;
 mod reach;
+mod stand;
+mod stand_species;
 mod stream_trees;
 
 pub use cells::ForestCells;

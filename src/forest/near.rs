@@ -3,6 +3,7 @@
 #[cfg(feature = "render")]
 use super::extent::Extent;
 use super::{
+    cell_canopies::CanopyTask,
     components::{ForestCell, ForestSettings},
     near_cell::{NearCell, NearTree, tree},
     planted_tile::PlantedTile,
@@ -13,6 +14,7 @@ use crate::{
     scatter::Planted,
     setting::SettingError,
     tree::Species,
+    wind::Canopy,
 };
 use bevy::{
     platform::collections::HashMap,
@@ -48,6 +50,9 @@ pub(super) struct NearTrees {
     cells: HashMap<IVec2, NearCell>,
     /// Cells whose trees are still to be spawned, in that order.
     unspawned: Vec<IVec2>,
+    /// Cells of whose trees some lack the stand of this generation of the forest's.
+    without_canopies: Vec<IVec2>,
+    canopies_of: u64,
     changes: u64,
     /// Grows whenever the set of drawn cells may have changed.
     drawn_changes: u64,
@@ -92,6 +97,8 @@ impl NearTrees {
             tiles: HashMap::default(),
             cells: HashMap::default(),
             unspawned: Vec::new(),
+            without_canopies: Vec::new(),
+            canopies_of: 0,
             changes: 0,
             drawn_changes: 0,
         })
@@ -203,7 +210,8 @@ impl NearTrees {
 
     /// Takes over cells that have been planted.
     pub fn receive(&mut self, forest: Entity, species: &[Handle<Species>], commands: &mut Commands) {
-        let Self { planting, tiles, tile_cells, cells, unspawned, stream, changes, drawn_changes, .. } = self;
+        let Self { planting, tiles, tile_cells, cells, unspawned, without_canopies, stream, .. } = self;
+        let (changes, drawn_changes) = (&mut self.changes, &mut self.drawn_changes);
         planting.retain_mut(|(cell, source)| {
             let planted = match source {
                 Planting::Alone(task) => block_on(poll_once(task)),
@@ -228,9 +236,28 @@ impl NearTrees {
                 unspawned.push(*cell);
             }
             cells.insert(*cell, near);
+            without_canopies.push(*cell);
             *changes += 1;
             *drawn_changes += 1;
             false
+        });
+    }
+
+    /// Gives trees that lack it the stand of a generation of the forest's. `work_out` has that of a cell worked out.
+    pub fn give_canopies(
+        &mut self,
+        generation: u64,
+        work_out: impl Fn(IVec2) -> CanopyTask,
+        mut give: impl FnMut(Entity, Canopy),
+    ) {
+        let Self { cells, without_canopies, canopies_of, .. } = self;
+        if std::mem::replace(canopies_of, generation) != generation {
+            without_canopies.clear();
+            without_canopies.extend(cells.keys().copied());
+        }
+        without_canopies.retain(|cell| {
+            let there = cells.get_mut(cell);
+            there.is_some_and(|there| !there.give_canopies(generation, || work_out(*cell), &mut give))
         });
     }
 
@@ -277,7 +304,7 @@ impl NearTrees {
                 let handle = &species[usize::from(plant.species)];
                 let mut tree = commands.spawn((tree(&plant, handle.clone()), ChildOf(cell.entity)));
                 mark(&mut tree);
-                cell.spawned.push(NearTree { plant, species: handle.id(), entity: tree.id() });
+                cell.spawned.push(NearTree { plant, species: handle.id(), entity: tree.id(), canopy_of: 0 });
             }
             if cell.planted.is_empty() {
                 self.unspawned.remove(0);

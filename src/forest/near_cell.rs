@@ -1,9 +1,13 @@
 //! A near cell: which of its trees stand, which are still to come, and which are of the plan before.
 
-use super::extent::Extent;
+use super::{
+    cell_canopies::{CanopyTask, CellCanopies, finished},
+    extent::Extent,
+};
 use crate::{
     scatter::Planted,
     tree::{Species, Tree},
+    wind::Canopy,
 };
 use bevy::prelude::*;
 
@@ -21,6 +25,9 @@ pub(super) struct NearCell {
     pub is_drawn: bool,
     pub extent: Extent,
     pub is_articulated: bool,
+    /// The stand of its trees, of a generation of its forest's.
+    pub canopies: Option<(u64, CellCanopies)>,
+    pub canopy_task: Option<(u64, CanopyTask)>,
 }
 
 /// A tree of a near cell, and the plant that it is.
@@ -28,6 +35,8 @@ pub(super) struct NearTree {
     pub plant: Planted,
     pub species: AssetId<Species>,
     pub entity: Entity,
+    /// The generation of the stand that it was given; 0 before.
+    pub canopy_of: u64,
 }
 
 impl NearCell {
@@ -41,7 +50,35 @@ impl NearCell {
             outdated: Vec::new(),
             is_outdated: false,
             is_articulated: false,
+            canopies: None,
+            canopy_task: None,
         }
+    }
+
+    /// Gives its trees that lack it the stand of a generation, which `work_out` begins to work out. Returns whether all of its trees have it.
+    pub fn give_canopies(
+        &mut self,
+        generation: u64,
+        work_out: impl FnOnce() -> CanopyTask,
+        mut give: impl FnMut(Entity, Canopy),
+    ) -> bool {
+        if self.canopies.as_ref().is_none_or(|(of, _)| *of != generation) {
+            let task = self.canopy_task.take().filter(|(of, _)| *of == generation);
+            let (_, mut task) = task.unwrap_or_else(|| (generation, work_out()));
+            match finished(&mut task) {
+                Some(canopies) => self.canopies = Some((generation, canopies)),
+                None => {
+                    self.canopy_task = Some((generation, task));
+                    return false;
+                }
+            }
+        }
+        let Some((_, canopies)) = &self.canopies else { return false };
+        for tree in self.spawned.iter_mut().filter(|tree| tree.canopy_of != generation) {
+            tree.canopy_of = generation;
+            give(tree.entity, canopies.at(tree.plant.position));
+        }
+        self.planted.is_empty()
     }
 
     /// The same cell of another plan: trees that both have stay.

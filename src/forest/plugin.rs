@@ -4,8 +4,10 @@ use super::{
     begin::begin_forests,
     cells::{ForestCells, plant_cells},
     components::{Forest, ForestCell, ForestSettings},
+    give_canopies::give_canopies,
     missing_species::{MissingPlanSpecies, report_missing_plan_species},
     near_services::{articulate_near_trees, spawn_wind_cells},
+    stand_species::{StandSpeciesLibrary, prepare_stands},
     stream_trees::stream_trees,
 };
 use crate::{
@@ -32,6 +34,7 @@ impl Plugin for ForestPlugin {
         app.init_asset::<ForestPlan>()
             .init_asset_loader::<RonLoader<ForestPlan>>()
             .register_asset_reflect::<ForestPlan>()
+            .init_resource::<StandSpeciesLibrary>()
             .add_message::<MissingPlanSpecies>()
             .register_type::<Forest>()
             .register_type::<ForestSettings>()
@@ -40,8 +43,10 @@ impl Plugin for ForestPlugin {
             app,
             begin_forests,
             report_missing_plan_species,
+            prepare_stands,
             plant_cells,
             stream_trees,
+            give_canopies,
             spawn_wind_cells,
             articulate_near_trees
         );

@@ -22,7 +22,9 @@ const CELLS_DROPPED_PER_STEP: u32 = 128;
 /// Follows viewers over so many metres, with squares of that side.
 pub(super) fn reaching(load_m: f32, side_m: f32) -> StreamSettings {
     let load_m = load_m.min(MOST_CELLS / HYSTERESIS * side_m);
-    StreamSettings { load_m, keep_m: (HYSTERESIS * load_m).max(load_m + side_m), ..StreamSettings::default() }
+    let keep_m = (HYSTERESIS * load_m).max(load_m + side_m);
+    // What is kept lies at least a square beyond, and their sum may have been rounded down.
+    StreamSettings { load_m: load_m.min(keep_m - side_m), keep_m, ..StreamSettings::default() }
 }
 
 /// How far stems are known about the viewers, m.
@@ -46,4 +48,20 @@ pub(super) fn tile_stream(
     };
     let bounds = planter.cells().map(|cells| cells.map(|cell| cell.div_euclid(IVec2::splat(tile_cells))));
     CellStream::new(stream, side_m, bounds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
+
+    #[test]
+    fn any_forest_can_be_streamed() {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
+        for _ in 0..100_000 {
+            let (load_m, side_m) = (random.random_range(0.0..5e4), random.random_range(8.0..1024.0));
+            let settings = reaching(load_m, side_m);
+            assert!(CellStream::new(settings, side_m, None).is_ok(), "{load_m} with {side_m}: {settings:?}");
+        }
+    }
 }

@@ -2,17 +2,19 @@
 
 use super::{
     active::{ActiveSway, FLUTTER_PERIOD_S, WeightedResponse, leaf_clock_s},
+    components::InCanopy,
     response::WindResponse,
 };
 use crate::{
     dynamics::{
         RestingLeaf,
         pose::{BeamPose, TreeInWind, TreePoser},
+        stand_wind::{LOW_SHARE, WindAtTree},
     },
     tree::{
         Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Season, SpeciesModels, Tree, TreeBeams, TreeLeaves, TreeModel,
     },
-    wind::WindClock,
+    wind::{Canopy, WindClock},
 };
 use bevy::{math::Vec3A, prelude::*};
 
@@ -20,12 +22,12 @@ use bevy::{math::Vec3A, prelude::*};
 #[derive(Component, Default)]
 pub struct TreePose {
     beams: Vec<BeamPose>,
-    /// Wind at the tree in tree-local axes, m/s.
-    wind: Vec3,
+    /// Wind at the tree in tree-local axes.
+    wind: WindAtTree,
     /// One for each wind that blows: two while one fades into another.
     posers: [TreePoser; 2],
     /// What the posers were made for.
-    made_for: Option<(u64, AssetId<TreeModel>, GlobalTransform, f32)>,
+    made_for: Option<(u64, AssetId<TreeModel>, GlobalTransform, f32, Canopy)>,
     free_angles: Vec<Vec3A>,
     responses: Vec<Vec4>,
 }
@@ -74,14 +76,15 @@ pub(super) fn pose_trees(
     clock: Res<WindClock>,
     season: Res<Season>,
     models: Res<Assets<TreeModel>>,
-    mut trees: Query<(&Tree, &Grown, &Transform, &GlobalTransform, Has<ChildOf>, &mut TreePose)>,
+    mut trees: Query<(&Tree, &Grown, (&Transform, &GlobalTransform, Has<ChildOf>), Option<&InCanopy>, &mut TreePose)>,
 ) {
-    trees.par_iter_mut().for_each(|(of, grown, transform, global, is_child, mut tree)| {
+    trees.par_iter_mut().for_each(|(of, grown, (transform, global, is_child), canopy, mut tree)| {
         let Some(model) = models.get(&grown.model) else { return };
         let stands = if is_child { *global } else { GlobalTransform::from(*transform) };
         let leaf_share = model.leaf_season.share(season.wrapped() + of.season_shift());
-        tree.refresh(&sway, grown.model.id(), model, stands, leaf_share);
-        tree.follow(&sway, clock.time_s, stands);
+        let canopy = canopy.copied().unwrap_or_default().0;
+        tree.refresh(&sway, grown.model.id(), model, stands, leaf_share, canopy);
+        tree.follow(&sway, clock.time_s, model.height_m(), stands);
     });
 }
 
@@ -94,35 +97,48 @@ impl TreePose {
         model: &TreeModel,
         stands: GlobalTransform,
         leaf_share: f32,
+        canopy: Canopy,
     ) {
-        let key = (sway.generation(), id, stands, leaf_share);
+        let key = (sway.generation(), id, stands, leaf_share, canopy);
         if self.made_for == Some(key) {
             return;
         }
         self.beams.resize(model.beams.len(), BeamPose::REST);
         for (poser, WeightedResponse { response, .. }) in self.posers.iter_mut().zip(sway.now()) {
             let to_wind = wind_from_world(response) * world_from_local(&stands);
-            let scale = stands.affine().matrix3.determinant().abs().cbrt();
-            let (map, wind) = (response.basis.map(), response.beam_wind());
+            let scale = uniform_scale(&stands);
+            let (map, wind) = (response.basis.map(), response.beam_wind_in(&canopy));
             poser.prepare(&model.beams, &TreeInWind { map, wind, to_wind, scale, leaf_share });
         }
         self.made_for = Some(key);
     }
 
-    fn follow(&mut self, sway: &ActiveSway, time_s: f64, stands: GlobalTransform) {
+    fn follow(&mut self, sway: &ActiveSway, time_s: f64, height_m: f32, stands: GlobalTransform) {
         let local_from_world = world_from_local(&stands).transpose();
-        self.wind = Vec3::ZERO;
+        let height_m = height_m * uniform_scale(&stands);
+        let canopy = self.made_for.map(|(.., canopy)| canopy).unwrap_or_default();
+        self.wind = WindAtTree::default();
         self.free_angles.clear();
         self.free_angles.resize(self.beams.len(), Vec3A::ZERO);
         for (poser, WeightedResponse { response, weight }) in self.posers.iter().zip(sway.now()) {
             let place = response.place(stands.translation(), time_s);
             response.table.responses(&place, poser.rows(), &mut self.responses);
             poser.add_free_angles(&self.responses, weight, &mut self.free_angles);
-            let velocity = response.field.frame().to_world(response.table.velocity(&place));
-            self.wind += weight * (local_from_world * velocity);
+            let (stand, velocity) = (response.stand_wind(&canopy), response.table.velocity(&place));
+            let wind_at = |height_m: f32| {
+                let velocity = response.field.frame().to_world(stand.velocity(height_m, velocity));
+                weight * (local_from_world * velocity)
+            };
+            self.wind.high += wind_at(height_m);
+            self.wind.low += wind_at(LOW_SHARE * height_m);
         }
         self.posers[0].pose_free(&self.free_angles, &mut self.beams);
     }
+}
+
+/// The uniform scale nearest to that of a tree, without its sign.
+fn uniform_scale(stands: &GlobalTransform) -> f32 {
+    stands.affine().matrix3.determinant().abs().cbrt()
 }
 
 /// The rotation from world axes to wind coordinates.
@@ -178,7 +194,8 @@ pub(super) fn turn_leaves(
         let (anchor, carried) = beam_pose.carry(rest, cluster.at, cluster.anchor);
         let leaf = RestingLeaf { axis: cluster.axis, phase: cluster.phase };
         let response = &species.species.foliage.response;
-        let rotation = response.rotation(&leaf, carried, pose.wind, seconds, FLUTTER_PERIOD_S as f32);
+        let wind = pose.wind.at(anchor.y / model.height_m());
+        let rotation = response.rotation(&leaf, carried, wind, seconds, FLUTTER_PERIOD_S as f32);
         let upright = Quat::from_rotation_arc(Vec3::Y, cluster.axis);
         *transform = stands * Transform::from_translation(anchor).with_rotation(rotation * upright);
     });

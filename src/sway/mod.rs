@@ -2,16 +2,19 @@
 //!
 //! - `response` turns a wind field into tables, once per wind, off the frame.
 //! - `active` fades from the tables of one wind to those of the next.
+//! - `components` tells in what stand a tree stands ([`InCanopy`]).
 //! - `articulated` poses the trees that ask for it on the CPU.
 //!
 //! How the same tables move every tree on the GPU is in `render`.
 
 mod active;
 mod articulated;
+mod components;
 mod plugin;
 mod response;
 
 pub use active::{ActiveSway, FLUTTER_PERIOD_S, WeightedResponse, leaf_clock_s, wrapped_time_s};
 pub use articulated::TreePose;
+pub use components::InCanopy;
 pub use plugin::SwayPlugin;
 pub use response::{SwaySettings, WindResponse};

@@ -3,6 +3,7 @@
 use super::{
     active::{ActiveSway, finish_tables, follow_wind, is_windy, rebuild_tables},
     articulated::{articulate_trees, pose_beams, pose_trees, turn_leaves},
+    components::InCanopy,
     response::SwaySettings,
 };
 use crate::{
@@ -23,6 +24,7 @@ impl Plugin for SwayPlugin {
         require_plugin::<Self, TreePlugin>(app);
         configure_sets(app);
         app.register_type::<SwaySettings>()
+            .register_type::<InCanopy>()
             .init_resource::<SwaySettings>()
             .init_resource::<ActiveSway>()
             .configure_sets(PostUpdate, WindwoodSystems::Pose.run_if(is_windy));

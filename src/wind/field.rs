@@ -13,6 +13,7 @@
 //! The three components are independent. So the field has no shear stress, which in a real boundary layer is `-<u w> = u*^2`.
 
 use super::{
+    fast_gusts,
     frame::WindFrame,
     interpolation::{BlendTaps, SplineTaps},
     lateral::LateralRule,
@@ -116,6 +117,14 @@ impl WindField {
             let turbulence = a[time] * weights[0] + b[time] * weights[1] + c[time] * weights[2] + d[time] * weights[3];
             Vec3::from(mean + turbulence)
         }));
+    }
+
+    /// One short period of the turbulence above some 2 Hz ([`GustBands`](super::GustBands)) at `height_m` above ground, m/s in wind
+    /// coordinates: evenly spaced samples, a power of two of them. All places have it, each at another time. It is not the
+    /// realisation that [`sample`](Self::sample) gives up to half the field's sampling rate. Zero in a calm.
+    #[must_use]
+    pub fn fast_gusts(&self, height_m: f32) -> Vec<Vec3> {
+        fast_gusts::synthesise(&self.settings, &self.profile, height_m)
     }
 
     /// How much later than at the origin of wind coordinates a sample passes a place `along_m` down the wind and `across_m`

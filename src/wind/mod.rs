@@ -10,11 +10,15 @@
 //! 4. The realisation drifts along with the mean wind (Taylor's hypothesis, equation 14). So [`WindField::sample`] gives
 //!    the velocity at any place and time.
 //! 5. Between the columns of the realisation, and beyond the last of them, `lateral` keeps its power and coherence.
-//! 6. [`cross_flow_pressure`] is the load of that velocity on a slender body (equation 15).
+//! 6. Above some 2 Hz, where places a metre apart share next to nothing, one short series serves all of them:
+//!    [`WindField::fast_gusts`].
+//! 7. [`cross_flow_pressure`] is the load of that velocity on a slender body (equation 15).
+//! 8. Between trees the wind is weaker and gustier: [`Canopy`].
 //!
 //! # Files
-//! - Plain arithmetic without an app: `settings`, `frame`, `profile`, `spectrum`, `coherence`, `factorisation`,
-//!   `synthesis`, `interpolation`, `lateral`, `field`, `pressure`, `cross_fade`.
+//! - Plain arithmetic without an app: `settings`, `frame`, `profile`, `spectrum`, `level_spectrum`, `coherence`,
+//!   `factorisation`, `synthesis`, `interpolation`, `lateral`, `fast_gusts`, `field`, `pressure`, `canopy`,
+//!   `cross_fade`.
 //! - For an app: `ecs/clock` ([`WindClock`]), `ecs/active` ([`Wind`], [`ActiveWind`]), `components` ([`WindCell`]),
 //!   `gizmos`, `plugin`.
 //!
@@ -23,17 +27,20 @@
 //! Inside this room velocities are `Vec3` (along, up, across): see [`WindFrame`]. The paper's (u, v, w) are
 //! (along, across, up).
 
+mod canopy;
 mod coherence;
 mod components;
 mod cross_fade;
 mod ecs;
 mod factorisation;
+mod fast_gusts;
 mod field;
 mod frame;
 #[cfg(feature = "render")]
 mod gizmos;
 mod interpolation;
 mod lateral;
+mod level_spectrum;
 mod plugin;
 mod pressure;
 mod profile;
@@ -42,12 +49,15 @@ mod spectrum;
 mod synthesis;
 
 pub use crate::constants::REFERENCE_HEIGHT_M;
+pub use canopy::{Canopy, EXPOSURE_DIRECTIONS};
+pub(crate) use canopy::{CanopyProfile, PackedCanopy, SUBLAYER, UpwindPath, exposure_direction};
 pub use components::WindCell;
 pub(crate) use ecs::active::NumberedWind;
 pub use ecs::{
     active::{ActiveWind, Wind},
     clock::WindClock,
 };
+pub use fast_gusts::GustBands;
 pub use field::WindField;
 pub use frame::WindFrame;
 #[cfg(feature = "render")]
@@ -55,5 +65,6 @@ pub use gizmos::{WindGizmoPlugin, WindGizmos};
 pub use plugin::WindPlugin;
 pub use pressure::cross_flow_pressure;
 pub use profile::LogProfile;
+pub(crate) use profile::VON_KARMAN;
 pub use settings::{FieldResolution, FieldSettings, TurbulenceBand};
 pub use spectrum::{CoherenceDecay, DecayCoefficients};

@@ -11,7 +11,7 @@ use crate::constants::REFERENCE_HEIGHT_M;
 use std::f32::consts::E;
 
 /// The von Karman constant of the logarithmic law (Setas et al., equation 10).
-const VON_KARMAN: f32 = 0.4;
+pub(crate) const VON_KARMAN: f32 = 0.4;
 
 /// Far above the atmosphere. The law does not hold there, but stays finite.
 const GREATEST_HEIGHT_M: f32 = 1e6;

@@ -13,8 +13,9 @@
 use super::{
     coherence::{CoherenceFactors, CoherenceKernel, decay_times_s, exponentials},
     factorisation::packed_columns,
+    level_spectrum::LevelSpectrum,
     profile::LogProfile,
-    settings::{FieldSettings, TurbulenceBand},
+    settings::FieldSettings,
     spectrum::TurbulenceComponent,
 };
 use bevy::{
@@ -100,36 +101,17 @@ struct BandSpectrum {
 impl BandSpectrum {
     fn new(component: TurbulenceComponent, settings: &FieldSettings, profile: &LogProfile, grid: &Grid) -> Self {
         let mut amplitudes = vec![0.0; grid.bins() * grid.levels];
-        let friction_velocity_m_s = f64::from(profile.friction_velocity_m_s);
-        let variance = component.variance_factor() * friction_velocity_m_s.powi(2);
         let mut fractions = 0.0;
         for level in 0..grid.levels {
-            let (height_m, mean_speed_m_s) = profile.turbulence_scales(settings.resolution.level_height_m(level));
-            let bin_variance = |bin| {
-                let density = component.power_spectral_density(
-                    grid.frequency_hz(bin),
-                    f64::from(height_m),
-                    f64::from(mean_speed_m_s),
-                    friction_velocity_m_s,
-                );
-                density * grid.frequency_step_hz
-            };
-            let fraction = (0..grid.bins()).map(bin_variance).sum::<f64>() / variance;
-            fractions += fraction;
-            let factor = f64::from(settings.gustiness) * band_factor(settings.band, fraction);
+            let height_m = settings.resolution.level_height_m(level);
+            let spectrum = LevelSpectrum::new(component, settings, profile, height_m);
+            fractions += spectrum.resolved_fraction;
             for bin in 0..grid.bins() {
-                amplitudes[bin * grid.levels + level] = (factor * (2.0 * bin_variance(bin)).sqrt()) as f32;
+                let amplitude_m_s = spectrum.amplitude_m_s(grid.frequency_hz(bin), grid.frequency_step_hz);
+                amplitudes[bin * grid.levels + level] = amplitude_m_s as f32;
             }
         }
         Self { amplitudes, resolved_fraction: (fractions / grid.levels as f64) as f32 }
-    }
-}
-
-/// The factor on all amplitudes of a level whose band holds `fraction` > 0 of the variance.
-fn band_factor(band: TurbulenceBand, fraction: f64) -> f64 {
-    match band {
-        TurbulenceBand::TrueSpectrum => 1.0,
-        TurbulenceBand::TrueVariance => fraction.sqrt().recip(),
     }
 }
 

@@ -83,15 +83,20 @@ pub fn floats(bytes: &[u8]) -> Vec<f32> {
 }
 
 /// Poses of the beams of a tree in the wind at a time, computed on the CPU.
-pub fn cpu_poses(sway: &ActiveSway, model: &TreeModel, tree: &Transform, time_s: f64) -> Vec<BeamPose> {
+pub fn cpu_poses(
+    sway: &ActiveSway,
+    model: &TreeModel,
+    tree: &Transform,
+    canopy: &Canopy,
+    time_s: f64,
+) -> Vec<BeamPose> {
     let mut poses = vec![BeamPose::REST; model.beams.len()];
     if let Some(wind) = sway.now().next().map(|wind| wind.response) {
         let frame = wind.field.frame();
         let wind_from_world = Mat3::from_cols(frame.along, Vec3::Y, frame.across).transpose();
         let to_wind = wind_from_world * Mat3::from_quat(tree.rotation);
-        let (map, scale) = (wind.basis.map(), tree.scale.y);
-        let poser =
-            TreePoser::new(&model.beams, &TreeInWind { map, wind: wind.beam_wind(), to_wind, scale, leaf_share: 1.0 });
+        let (map, scale, beam_wind) = (wind.basis.map(), tree.scale.y, wind.beam_wind_in(canopy));
+        let poser = TreePoser::new(&model.beams, &TreeInWind { map, wind: beam_wind, to_wind, scale, leaf_share: 1.0 });
         let mut responses = Vec::new();
         wind.table.responses(&wind.place(tree.translation, time_s), poser.rows(), &mut responses);
         poser.pose(&responses, &mut poses);

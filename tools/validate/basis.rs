@@ -1,6 +1,7 @@
 //! The load bases against direct integration of each beam's own load by its own oscillator.
 
 use crate::report::Report;
+use crate::test_wind::{MEAN_SPEED_M_S, TIME_STEP_S, TURBULENCE_INTENSITY, test_wind};
 use crate::total_error;
 use bevy::math::{Vec3, Vec4};
 use bevy_windwood::dynamics::{
@@ -8,16 +9,10 @@ use bevy_windwood::dynamics::{
 };
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
-use rustfft::FftPlanner;
-use rustfft::num_complex::Complex;
 use std::f64::consts::TAU;
 
 const SEED: u64 = 25;
-pub const MEAN_SPEED_M_S: f64 = 8.0;
-const HEIGHT_M: f64 = 10.0;
-pub const TURBULENCE_INTENSITY: f64 = 0.2;
 pub const SAMPLES: usize = 4096;
-pub const TIME_STEP_S: f64 = 1.0 / 16.0;
 const DAMPING_RATIO: f32 = 0.1;
 const DAMPING: f64 = DAMPING_RATIO as f64;
 const DIRECTIONS: usize = 250;
@@ -47,7 +42,6 @@ pub fn run() -> Report {
     let rounding = experiment.rounding_errors();
     report.record("class_rounding_median", quantile(rounding.clone(), 0.5), "frequency to the nearest class alone");
     report.record("class_rounding_p95", quantile(rounding, 0.95), "frequency to the nearest class alone");
-    report.record("quasi_static_5_hz", experiment.quasi_static_error(5.0), "resonance left out above the band");
     total_error::run(&mut report);
     report
 }
@@ -72,7 +66,10 @@ impl<'a> Experiment<'a> {
         let classes = FrequencyClasses::default();
         let direct = CLASSES.map(|class| {
             let frequency_hz = f64::from(classes.frequency_hz(class));
-            directions.iter().map(|&direction| integrate(fine, direction, frequency_hz, DAMPING)).collect()
+            directions
+                .iter()
+                .map(|&direction| integrate(fine, OVERSAMPLING, direction, frequency_hz, DAMPING))
+                .collect()
         });
         let coarse = fine.iter().step_by(OVERSAMPLING).copied().collect();
         Self { fine, coarse, directions, classes, direct: direct.into() }
@@ -91,7 +88,7 @@ impl<'a> Experiment<'a> {
     fn table(&self, kind: LoadBasisKind) -> (LoadBasis, ResponseTable) {
         let basis = LoadBasis::new(kind, &self.coarse, drag);
         let columns = [self.coarse.clone()];
-        let table = ResponseTable::new(&columns, TIME_STEP_S as f32, &basis, self.grid());
+        let table = ResponseTable::new(&columns, TIME_STEP_S as f32, &[], &basis, self.grid());
         (basis, table)
     }
 
@@ -122,7 +119,7 @@ impl<'a> Experiment<'a> {
         let columns = [self.fine.to_vec()];
         let basis = LoadBasis::new(LoadBasisKind::Principal, &self.coarse, drag);
         let step_s = TIME_STEP_S / OVERSAMPLING as f64;
-        let fine_table = ResponseTable::new(&columns, step_s as f32, &basis, self.grid());
+        let fine_table = ResponseTable::new(&columns, step_s as f32, &[], &basis, self.grid());
         let series = |table: &ResponseTable| -> Vec<Vec3> {
             (0..self.fine.len())
                 .map(|step| table.response(self.row(class), &on_column(step as f64 * step_s)).truncate())
@@ -137,19 +134,11 @@ impl<'a> Experiment<'a> {
         let error = |&direction: &Vec3| {
             let frequency_hz = 0.1 * 30f32.powf(random.random::<f32>());
             let class = self.classes.nearest(self.classes.coordinate(frequency_hz));
-            let rounded = integrate(self.fine, direction, f64::from(self.classes.frequency_hz(class)), DAMPING);
-            relative_error(&rounded, &integrate(self.fine, direction, f64::from(frequency_hz), DAMPING))
+            let rounded =
+                integrate(self.fine, OVERSAMPLING, direction, f64::from(self.classes.frequency_hz(class)), DAMPING);
+            relative_error(&rounded, &integrate(self.fine, OVERSAMPLING, direction, f64::from(frequency_hz), DAMPING))
         };
         self.directions.iter().map(error).collect()
-    }
-
-    /// Error of a fast beam that follows its load without inertia, median over directions.
-    fn quasi_static_error(&self, frequency_hz: f64) -> f64 {
-        let error = |&direction: &Vec3| {
-            let load: Vec<Vec3> = self.fine.iter().map(|&velocity| drag(velocity, direction)).collect();
-            relative_error(&load, &integrate(self.fine, direction, frequency_hz, DAMPING))
-        };
-        quantile(self.directions.iter().map(error).collect(), 0.5)
     }
 }
 
@@ -159,11 +148,17 @@ pub fn drag(velocity: Vec3, direction: Vec3) -> Vec3 {
     normal.length() * normal
 }
 
-/// The steady motion of one beam over a period: its own load on its own oscillator, stepped through two periods. Scaled by the
-/// square of the natural frequency, as the table is.
-pub fn integrate(fine: &[Vec3], direction: Vec3, frequency_hz: f64, damping_ratio: f64) -> Vec<Vec3> {
+/// The steady motion of one beam over a period: its own load on its own oscillator, stepped through two periods of the wind, which has
+/// so many samples for each step of the table. Scaled by the square of the natural frequency, as the table is.
+pub fn integrate(
+    fine: &[Vec3],
+    oversampling: usize,
+    direction: Vec3,
+    frequency_hz: f64,
+    damping_ratio: f64,
+) -> Vec<Vec3> {
     let omega = TAU * frequency_hz;
-    let step_s = TIME_STEP_S / OVERSAMPLING as f64;
+    let step_s = TIME_STEP_S / oversampling as f64;
     let step = ExactStep::new(omega, damping_ratio, step_s).expect("a frequency above zero");
     let stiffness = (omega * omega) as f32;
     let load: Vec<Vec3> = fine.iter().map(|&velocity| stiffness * drag(velocity, direction)).collect();
@@ -203,44 +198,4 @@ pub fn random_direction(random: &mut Xoshiro256PlusPlus) -> Vec3 {
     let azimuth = random.random_range(0.0..std::f32::consts::TAU);
     let radius = (1.0 - height * height).sqrt();
     Vec3::new(radius * azimuth.cos(), height, radius * azimuth.sin())
-}
-
-/// A turbulent wind at one point, in wind coordinates: the spectra of eq. 9, corrected, with random phases. It is written again
-/// here so that the check does not depend on the code it checks. A period of `samples` steps of 1/16 s, at `oversampling`
-/// times as many.
-pub fn test_wind(seed: u64, samples: usize, oversampling: usize, intensity: f64) -> Vec<Vec3> {
-    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let [along, up, across] = [0, 1, 2].map(|component| {
-        let count = samples * oversampling;
-        let mut spectrum = vec![Complex::<f64>::default(); count];
-        let frequency_step_hz = 1.0 / (samples as f64 * TIME_STEP_S);
-        for (bin, value) in spectrum.iter_mut().enumerate().take(samples / 2).skip(1) {
-            let amplitude = (2.0 * spectra(bin as f64 * frequency_step_hz)[component] * frequency_step_hz).sqrt();
-            *value = Complex::from_polar(amplitude, random.random_range(0.0..TAU));
-        }
-        FftPlanner::new().plan_fft_inverse(count).process(&mut spectrum);
-        spectrum.into_iter().map(|value| value.re).collect::<Vec<f64>>()
-    });
-    let rms = (along.iter().map(|u| u * u).sum::<f64>() / along.len() as f64).sqrt();
-    let scale = intensity * MEAN_SPEED_M_S / rms;
-    let velocity = |index: usize| {
-        Vec3::new(
-            (MEAN_SPEED_M_S + scale * along[index]) as f32,
-            (scale * up[index]) as f32,
-            (scale * across[index]) as f32,
-        )
-    };
-    (0..along.len()).map(velocity).collect()
-}
-
-/// One-sided spectra of the components along, up and across, in u*^2 / Hz.
-fn spectra(frequency_hz: f64) -> [f64; 3] {
-    let reduced = frequency_hz * HEIGHT_M / MEAN_SPEED_M_S;
-    let unit = reduced / frequency_hz;
-    let power = |base: f64| base.powf(5.0 / 3.0);
-    [
-        200.0 * unit / power(1.0 + 50.0 * reduced),
-        3.36 * unit / (1.0 + 10.0 * power(reduced)),
-        15.0 * unit / power(1.0 + 9.5 * reduced),
-    ]
 }

@@ -1,9 +1,9 @@
 //! The cantilever against finite elements, and the periodic steady state against the Duhamel integral.
 
-use crate::basis::{TURBULENCE_INTENSITY, test_wind};
 use crate::cantilever::{CantileverMode, TaperedBeam, disc_second_moment_m4, natural_omega_rad_s};
 use crate::oscillator::Oscillator;
 use crate::report::Report;
+use crate::test_wind::{TURBULENCE_INTENSITY, test_wind};
 use nalgebra::{DMatrix, Matrix4, SymmetricEigen};
 use std::f64::consts::{PI, TAU};
 

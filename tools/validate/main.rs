@@ -5,11 +5,14 @@
 
 mod basis;
 mod beams;
+mod canopy;
 #[path = "../../src/dynamics/oracle/cantilever.rs"]
 #[expect(dead_code, reason = "a part of it is for the unit tests")]
 mod cantilever;
 #[path = "../support/chart.rs"]
 mod chart;
+mod cost;
+mod extremes;
 mod figure9;
 mod figure9_chart;
 mod frame;
@@ -29,6 +32,7 @@ mod spectrum;
 mod support;
 mod sway;
 mod terrain;
+mod test_wind;
 mod total_error;
 mod trees;
 mod trees_in_wind;
@@ -52,6 +56,10 @@ enum Topic {
     Skeleton,
     /// The sway of trunks against direct integration in a wind that every part of the crown feels. Takes some minutes.
     Sway,
+    /// The wind in stands of trees beside what others have measured.
+    Canopy,
+    /// Trees of any size and stiffness in any wind, anywhere and after any time: finite, as long as they were, not bent past the wind.
+    Extremes,
     /// Vertices posed on the GPU against the same on the CPU.
     Parity,
     /// How far a small change of wind or branch turns a leaf, and leaves on the GPU against the same on the CPU.
@@ -69,6 +77,8 @@ enum Topic {
     Figure9,
     /// Time of a frame on a real GPU: up to a hundred thousand trees in full HD.
     Grid,
+    /// What a frame costs, pass by pass: vertices, fragments, time. A hundred thousand trees take `--trees 100000`.
+    Cost,
     /// Every level of detail against the full tree, and how visible its changes are. Takes some minutes.
     Levels,
 }
@@ -110,6 +120,8 @@ fn main() -> ExitCode {
         Topic::Beams => beams::run(),
         Topic::Skeleton => skeleton::run(),
         Topic::Sway => sway::run(),
+        Topic::Canopy => canopy::run(),
+        Topic::Extremes => extremes::run(),
         Topic::Parity => parity::run(),
         Topic::Leaves => leaves::run(),
         Topic::Terrain => terrain::run(),
@@ -118,6 +130,7 @@ fn main() -> ExitCode {
         Topic::Trees => trees::run(),
         Topic::Figure9 => figure9::run(options.frames, options.trees, &options.out.join("figure9.png")),
         Topic::Grid => grid::run(options.frames, options.trees, &options.out),
+        Topic::Cost => cost::run(options.trees, &options.out),
         Topic::Levels => levels::run(&options.out.join("levels.png"), options.species.as_deref(), options.year),
     };
     report.print();

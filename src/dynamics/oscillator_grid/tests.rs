@@ -23,17 +23,25 @@ fn exact(frequency_hz: f64, natural_hz: f64, size_m: f64, damping: f64) -> Compl
     Complex::new(1.0 - ratio * ratio, 2.0 * damping * ratio).inv() * felt
 }
 
+/// Where the low band ends for a wind of 128 s.
+const CROSSOVER_HZ: f64 = 2.0625;
+
 /// The transfer function of a row at so many bins.
 fn of_row(grid: &OscillatorGrid, row: u32, bin_hz: f64, bins: usize) -> Vec<Complex<f64>> {
     let row = row as usize;
-    let quasi_static = grid.classes.quasi_static();
-    let (class, size, damping) = if row < quasi_static * SIZES * DAMPINGS {
-        (row / (SIZES * DAMPINGS), row / DAMPINGS % SIZES, row % DAMPINGS)
+    let (low, high, first_fast) = (grid.low_row(0), grid.low_row(SIZES), grid.classes.first_fast());
+    let is_below = |bin: usize| (bin as f64) * bin_hz < CROSSOVER_HZ;
+    if row < low {
+        let (class, size, damping) = (row / (SIZES * DAMPINGS), row / DAMPINGS % SIZES, row % DAMPINGS);
+        let felt = grid.admittances(class, size, bin_hz);
+        grid.transfer(class, damping, bin_hz).zip(felt).map(|(response, felt)| response * felt).take(bins).collect()
+    } else if row < high {
+        let felt = grid.admittances(first_fast, row - low, bin_hz).map(Complex::from);
+        felt.enumerate().map(|(bin, felt)| if is_below(bin) { felt } else { Complex::ZERO }).take(bins).collect()
     } else {
-        (quasi_static, row - quasi_static * SIZES * DAMPINGS, 0)
-    };
-    let felt = grid.admittances(class, size, bin_hz);
-    grid.transfer(class, damping, bin_hz).zip(felt).map(|(response, felt)| response * felt).take(bins).collect()
+        let oscillator = grid.transfer(first_fast + (row - high) / DAMPINGS, (row - high) % DAMPINGS, bin_hz);
+        oscillator.enumerate().map(|(bin, o)| if is_below(bin) { Complex::ZERO } else { o }).take(bins).collect()
+    }
 }
 
 /// Variances of the response in the gusts: mixed and exact.
@@ -73,6 +81,24 @@ fn mixes_sway_as_far_as_beams_of_any_size_and_damping() {
     println!("worst rms error {worst}");
 }
 
+/// The low band has no inertia, and the high band one admittance for all frequencies.
+#[test]
+fn fast_beams_sway_as_far_as_beams_of_any_size_and_damping() {
+    let mut worst = 0.0_f64;
+    for class in [22, 24, 26, 28] {
+        for reduced_size in [0.005, 0.01, 0.015, 0.04, 0.1, 0.2, 0.3] {
+            for damping in [0.05, 0.08, 0.12, 0.2, 0.3] {
+                let size_m = reduced_size * SPEED_M_S / grid().class_hz(class);
+                let [mixed, exact] = variances(class, size_m, damping);
+                let error = (mixed / exact).sqrt() - 1.0;
+                worst = worst.max(error.abs());
+                assert!(error.abs() < 0.05, "class {class}, {reduced_size}, {damping}: {error}");
+            }
+        }
+    }
+    println!("worst rms error of fast beams {worst}");
+}
+
 #[test]
 fn nodes_of_the_grid_are_exact() {
     let grid = grid();
@@ -88,25 +114,48 @@ fn nodes_of_the_grid_are_exact() {
 }
 
 #[test]
-fn weights_add_up_to_one_for_any_beam() {
+fn weights_of_each_band_add_up_for_any_beam() {
     let grid = grid();
-    for class in [f32::NAN, -5.0, 3.3, 21.8, 40.0, f32::INFINITY] {
+    for class in [f32::NAN, -5.0, 3.3, 21.4, 21.6, 25.0, 28.7, 40.0, f32::INFINITY] {
         for averaging_m_s in [f32::NAN, -1.0, 0.0, 0.5, 30.0, f32::INFINITY] {
             for damping in [f32::NAN, -1.0, 0.0, 0.1, 5.0] {
                 let RowWeights { rows, weights } = grid.weights(class, averaging_m_s, damping);
-                assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{class} {averaging_m_s} {damping}");
-                assert!(weights.iter().all(|weight| *weight >= 0.0));
-                assert!(rows.iter().all(|row| (*row as usize) < grid.rows()));
+                let told = format!("{class} {averaging_m_s} {damping}");
+                assert!(weights.iter().all(|weight| *weight >= 0.0), "{told}");
+                assert!(rows.iter().all(|row| (*row as usize) < grid.rows()), "{told}");
+                let of_row = |is_of: &dyn Fn(usize) -> bool| {
+                    let pairs = rows.iter().zip(weights);
+                    pairs.filter(|(row, _)| is_of(**row as usize)).map(|(_, weight)| weight).sum::<f32>()
+                };
+                let slow_and_low = of_row(&|row| row < grid.low_row(SIZES));
+                assert!((slow_and_low - 1.0).abs() < 1e-5, "{told}");
+                let high = of_row(&|row| row >= grid.low_row(SIZES));
+                let expected = if class < 21.5 { 0.0 } else { grid.natural_admittance(averaging_m_s) };
+                assert!((high - expected).abs() < 1e-5, "{told}");
             }
         }
+    }
+}
+
+/// Interpolated between three sizes against the closed form.
+#[test]
+fn fast_beams_feel_fast_gusts_with_the_admittance_of_their_natural_frequency() {
+    for reduced_size in [0.006, 0.015, 0.042, 0.1, 0.2, 0.294] {
+        let found = f64::from(grid().natural_admittance((reduced_size * SPEED_M_S) as f32));
+        let expected = admittance(reduced_size, DECAY);
+        assert!((found - expected).abs() < 0.05, "{reduced_size}: {found} is not {expected}");
     }
 }
 
 #[test]
 fn slow_classes_have_fewer_samples() {
     let grid = grid();
-    let samples: Vec<usize> = (0..=grid.classes.quasi_static()).map(|class| grid.samples(class, 128.0, 2048)).collect();
-    assert!(samples.windows(2).all(|pair| pair[0] <= pair[1]), "{samples:?}");
-    assert_eq!((samples[0], samples[22]), (64, 2048));
+    let slow: Vec<usize> = (0..22).map(|class| grid.samples(class, 128.0, 2048)).collect();
+    let fast: Vec<usize> = (22..30).map(|class| grid.samples(class, 8.0, 1024)).collect();
+    for samples in [&slow, &fast] {
+        assert!(samples.windows(2).all(|pair| pair[0] <= pair[1]), "{samples:?}");
+    }
+    assert_eq!((slow[0], slow[21], fast[0], fast[7]), (64, 2048, 256, 1024));
+    assert_eq!(grid.low_samples(128.0, 2048), 1024);
     assert_eq!(grid.samples(0, 100.0, 1000), 1000);
 }

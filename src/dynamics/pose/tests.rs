@@ -1,6 +1,6 @@
 use super::super::{
     beam::BeamSway, direction_map::LoadCoefficients, frequency_classes::FrequencyClasses, mean_wind::MeanWind,
-    oracle::cantilever::CantileverMode, oscillator_grid::OscillatorGrid,
+    oracle::cantilever::CantileverMode, oscillator_grid::OscillatorGrid, stand_wind::StandWind,
 };
 use super::*;
 use bevy::math::{DVec3, Mat3};
@@ -12,7 +12,7 @@ const fn sway(gain: f32, class: f32) -> BeamSway {
 
 fn wind() -> BeamWind {
     BeamWind {
-        mean: MeanWind::open_country(8.0),
+        stand: StandWind::open(MeanWind::open_country(8.0)),
         grid: OscillatorGrid::new(FrequencyClasses::default(), 0.1, 8.0, 10.0),
     }
 }
@@ -27,6 +27,7 @@ const BEAM: BeamDynamics = BeamDynamics {
     direction: Vec3::new(0.36, 0.8, 0.48),
     attach: 0.0,
     parent: NO_PARENT,
+    angle_limit_rad: TIP_ANGLE_LIMIT,
     in_leaf: sway(0.004, 7.0),
     bare: sway(0.006, 8.0),
 };
@@ -48,6 +49,7 @@ fn hierarchy() -> [BeamDynamics; 3] {
         direction: Vec3::new(0.0, 0.28, -0.96),
         attach: 0.5,
         parent: 1,
+        angle_limit_rad: TIP_ANGLE_LIMIT,
         in_leaf: sway(0.02, 20.0),
         bare: sway(0.02, 20.0),
     };

@@ -110,6 +110,22 @@ impl Layer {
         self.area.density_per_ha * self.region.coverage(at) * ground
     }
 
+    /// Tells what each stock adds to [`density_per_ha`](Self::density_per_ha): the number of the stock, and its part.
+    pub(super) fn expected_stock(&self, at: DVec2, height_m: f32, slope: f32, mut tell: impl FnMut(u32, f32)) {
+        let density_per_ha = self.density_per_ha(at, height_m, slope);
+        if density_per_ha <= 0.0 {
+            return;
+        }
+        let share = |stock: &Stock| stock.share * stock.ground.admitted(height_m, slope);
+        let shares: f32 = self.area.stock.iter().map(share).sum();
+        for (number, stock) in (0..).zip(&self.area.stock) {
+            let part = share(stock) / shares;
+            if part > 0.0 {
+                tell(number, density_per_ha * part);
+            }
+        }
+    }
+
     /// Adds the plants of the quadrats that reach into `around`, where the place is `free` and the ground is right.
     pub(super) fn add_candidates(
         &self,

@@ -22,6 +22,16 @@ const MOST_SPECIES: usize = 256;
 /// Most candidates of a cell, where very many areas overlap.
 const MOST_CANDIDATES: usize = 1 << 22;
 
+/// Plants of one species that are to be expected at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ExpectedStock {
+    /// Number of the species, as in [`Planted::species`].
+    pub species: u8,
+    /// Mean age.
+    pub age_years: f32,
+    pub density_per_ha: f32,
+}
+
 /// A plan, prepared for planting.
 #[derive(Clone, Debug)]
 pub struct Planter {
@@ -108,17 +118,38 @@ impl Planter {
     /// Plants per hectare to be expected at a place (x, z), before those go that are too near to each other; 0 where
     /// nothing may grow.
     pub(crate) fn density_per_ha(&self, at: DVec2, ground: &impl Ground) -> f32 {
+        let mut density_per_ha = 0.0;
+        self.visit_layers(at, ground, |_, layer, height_m, slope| {
+            density_per_ha += layer.density_per_ha(at, height_m, slope);
+        });
+        density_per_ha
+    }
+
+    /// Tells what stock is to be expected at a place (x, z), as [`density_per_ha`](Self::density_per_ha) counts it.
+    pub(crate) fn expected_stock(&self, at: DVec2, ground: &impl Ground, mut tell: impl FnMut(ExpectedStock)) {
+        self.visit_layers(at, ground, |number, layer, height_m, slope| {
+            layer.expected_stock(at, height_m, slope, |stock, density_per_ha| {
+                let species = self.species_of_stock[number][stock as usize];
+                tell(ExpectedStock { species, age_years: layer.stock(stock).age_years, density_per_ha });
+            });
+        });
+    }
+
+    /// Visits the layers that may grow at a place (x, z) where nothing is in the way, with the height and the slope of the ground.
+    fn visit_layers(&self, at: DVec2, ground: &impl Ground, mut visit: impl FnMut(usize, &Layer, f32, f32)) {
         let mut near = Vec::new();
         self.blockers_by_place.near(at, at, &mut near);
         if near.iter().any(|&number| self.blockers[number as usize].covers(at)) {
-            return 0.0;
+            return;
         }
         let (height_m, slope) = (ground.height_m(at) as f32, ground.slope(at) as f32);
         if !height_m.is_finite() {
-            return 0.0;
+            return;
         }
         self.layers_by_place.near(at, at, &mut near);
-        near.iter().map(|&number| self.layers[number as usize].density_per_ha(at, height_m, slope)).sum()
+        for number in near.into_iter().map(|number| number as usize) {
+            visit(number, &self.layers[number], height_m, slope);
+        }
     }
 
     /// Fills `planted` with what stands in a cell: the same whatever was planted before. Plants near the border are compared

@@ -1,4 +1,7 @@
-use super::{super::settings::FieldResolution, *};
+use super::{
+    super::settings::{FieldResolution, TurbulenceBand},
+    *,
+};
 use approx::assert_relative_eq;
 use bevy::tasks::TaskPoolBuilder;
 

@@ -6,7 +6,7 @@ use bevy::math::{Mat3, Vec3};
 use bevy_windwood::{
     dynamics::{
         BeamDynamics, BeamPose, BeamSway, BeamWind, DRAG_SPEED_M_S, FrequencyClasses, LoadBasis, LoadBasisKind,
-        MeanWind, OscillatorGrid, SLOPE_TIP, TreeInWind, TreePoser,
+        MeanWind, OscillatorGrid, SLOPE_TIP, StandWind, TreeInWind, TreePoser,
     },
     tree::TreeModel,
     wind::LogProfile,
@@ -77,7 +77,8 @@ fn posed(model: &TreeModel, pressure: Vec3) -> Vec<BeamPose> {
         BeamDynamics { in_leaf, bare: in_leaf, ..*beam }
     };
     let beams: Vec<BeamDynamics> = model.beams.iter().map(quadratic).collect();
-    let wind = BeamWind { mean, grid: OscillatorGrid::new(FrequencyClasses::default(), 0.05, DRAG_SPEED_M_S, 10.0) };
+    let grid = OscillatorGrid::new(FrequencyClasses::default(), 0.05, DRAG_SPEED_M_S, 10.0);
+    let wind = BeamWind { stand: StandWind::open(mean), grid };
     let tree = TreeInWind { map: basis.map(), wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 };
     let poser = TreePoser::new(&beams, &tree);
     let mut poses = vec![BeamPose::REST; model.beams.len()];

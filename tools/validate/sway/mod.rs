@@ -17,7 +17,7 @@ mod wind;
 use crate::{report::Report, trees::shipped};
 use bands::{Bands, OCTAVES};
 use bevy_windwood::{
-    dynamics::{BeamWind, FrequencyClasses, MeanWind, OscillatorGrid},
+    dynamics::{BeamWind, FrequencyClasses, MeanWind, OscillatorGrid, StandWind},
     sway::SwaySettings,
     wind::{FieldSettings, LogProfile},
 };
@@ -106,7 +106,7 @@ fn damping_ratio(crown: &Crown, settings: &FieldSettings) -> f64 {
     let mean = MeanWind::new(&profile, 10.0);
     let structure = SwaySettings::default().damping_ratio;
     let grid = OscillatorGrid::new(FrequencyClasses::default(), structure, mean.speed_m_s, 10.0);
-    f64::from(crown.trunk[0].in_leaf.damping_ratio(&BeamWind { mean, grid }, 1.0))
+    f64::from(crown.trunk[0].in_leaf.damping_ratio(&BeamWind { stand: StandWind::open(mean), grid }, 1.0))
 }
 
 /// Brings the oracle's deflection, which is that of the trunk at two thirds of its length, to the product's at the tip, in a

@@ -3,7 +3,7 @@
 use super::crown::Crown;
 use bevy::math::{Mat3, Vec3};
 use bevy_windwood::{
-    dynamics::{BeamPose, SLOPE_TIP, TIP_ANGLE_LIMIT, TreeInWind, TreePoser},
+    dynamics::{BeamPose, SLOPE_TIP, TreeInWind, TreePoser},
     sway::{SwaySettings, WindResponse},
     wind::{FieldSettings, WindField},
 };
@@ -56,7 +56,7 @@ fn free_tip(crown: &Crown, poses: &[BeamPose]) -> Complex<f64> {
     let mut moved = Vec3::ZERO;
     for (beam, pose) in crown.trunk.iter().zip(poses) {
         let bent = Vec3::from(pose.tip_angle);
-        let share = (bent.length() / TIP_ANGLE_LIMIT).min(0.999);
+        let share = (bent.length() / beam.angle_limit_rad).min(0.999);
         let free = bent / (1.0 - share * share).sqrt();
         let rest = tip - (beam.base + beam.direction * beam.length_m);
         moved += free * (beam.length_m / SLOPE_TIP) + beam.direction.cross(free).cross(rest);

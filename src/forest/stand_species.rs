@@ -1,0 +1,88 @@
+//! Makes the stand of each forest ready once its species are known: of each one mature tree is grown in the background and measured.
+
+use super::{
+    cells::ForestCells,
+    stand::{Stand, StandSpecies},
+};
+use crate::tree::{Species, frontal_area_m2, individual::grow};
+use bevy::{
+    asset::LoadState,
+    platform::collections::HashMap,
+    prelude::*,
+    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+};
+
+/// Seed of the tree that is measured.
+const SEED: u64 = 1;
+
+/// The species that have been measured.
+#[derive(Resource, Default)]
+pub(super) struct StandSpeciesLibrary {
+    known: HashMap<AssetId<Species>, StandSpecies>,
+    measuring: Vec<(AssetId<Species>, Task<StandSpecies>)>,
+}
+
+fn measure(species: &Species) -> StandSpecies {
+    let tree = grow(species, species.age.mature_years, SEED);
+    StandSpecies { age: species.age, height_m: tree.height_m(), frontal_area_m2: frontal_area_m2(&tree) }
+}
+
+impl StandSpeciesLibrary {
+    /// Has a species measured, in place of what was known of it.
+    fn measure(&mut self, id: AssetId<Species>, species: &Species) {
+        let species = species.clone();
+        self.measuring.retain(|(other, _)| *other != id);
+        self.measuring.push((id, AsyncComputeTaskPool::get().spawn(async move { measure(&species) })));
+    }
+
+    fn is_asked_for(&self, id: AssetId<Species>) -> bool {
+        self.known.contains_key(&id) || self.measuring.iter().any(|(other, _)| *other == id)
+    }
+}
+
+/// Measures the species of forests, and gives each forest its stand when all of them are known or cannot be loaded.
+pub(super) fn prepare_stands(
+    mut library: ResMut<StandSpeciesLibrary>,
+    mut events: MessageReader<AssetEvent<Species>>,
+    species: Res<Assets<Species>>,
+    assets: Res<AssetServer>,
+    mut forests: Query<&mut ForestCells>,
+) {
+    let valid = |id: AssetId<Species>| species.get(id).filter(|species| species.validate().is_ok());
+    for event in events.read() {
+        if let AssetEvent::Modified { id } = event
+            && library.is_asked_for(*id)
+            && let Some(species) = valid(*id)
+        {
+            library.measure(*id, species);
+        }
+    }
+    for handle in forests.iter().filter(|forest| forest.stand().is_none()).flat_map(ForestCells::species) {
+        if let Some(species) = valid(handle.id()).filter(|_| !library.is_asked_for(handle.id())) {
+            library.measure(handle.id(), species);
+        }
+    }
+    let StandSpeciesLibrary { known, measuring } = &mut *library;
+    let mut measured: Vec<AssetId<Species>> = Vec::new();
+    measuring.retain_mut(|(id, task)| {
+        let Some(found) = block_on(poll_once(task)) else { return true };
+        if known.insert(*id, found) != Some(found) {
+            measured.push(*id);
+        }
+        false
+    });
+    for mut forest in &mut forests {
+        let has_other = forest.species().iter().any(|species| measured.contains(&species.id()));
+        if forest.stand().is_some() && !has_other {
+            continue;
+        }
+        let is_settled = |handle: &Handle<Species>| {
+            known.contains_key(&handle.id()) || matches!(assets.get_load_state(handle), Some(LoadState::Failed(_)))
+        };
+        if forest.species().iter().all(is_settled) {
+            let species = forest.species().iter().map(|handle| known.get(&handle.id()).copied()).collect();
+            let (planter, ground) = forest.planting();
+            forest.set_stand(Stand { planter, ground, species });
+        }
+    }
+}
