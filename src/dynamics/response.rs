@@ -46,6 +46,8 @@ pub struct ResponseTable {
     pub(crate) samples: usize,
     /// Time between two samples of the wind, in seconds.
     pub(crate) time_step_s: f32,
+    /// How its gusts are divided.
+    pub(crate) bands: GustBands,
     /// Where each row is in the values.
     pub(crate) rows: Vec<TableRow>,
     /// Responses to the four basis signals, at index `row.first + column * row.samples + time`.
@@ -92,6 +94,7 @@ impl ResponseTable {
             columns: columns.len(),
             samples,
             time_step_s,
+            bands: GustBands::of_period(samples as f64 * f64::from(time_step_s)),
             rows: Vec::with_capacity(grid.rows()),
             values: Vec::new(),
             velocities,
@@ -126,7 +129,7 @@ impl ResponseTable {
         let bin_hz = 1.0 / self.period_s();
         let samples = grid.low_samples(self.period_s(), self.samples);
         filter.resample(samples);
-        let slow_bins = (GustBands::of_period(self.period_s()).crossover_hz / bin_hz).floor() as usize + 1;
+        let slow_bins = (self.bands.crossover_hz / bin_hz).floor() as usize + 1;
         for size in 0..SIZES {
             let felt = grid.admittances(grid.classes.first_fast(), size, bin_hz).take(slow_bins).map(Complex::from);
             let below = felt.chain(std::iter::repeat(Complex::ZERO));
@@ -136,7 +139,7 @@ impl ResponseTable {
 
     fn add_high_rows(&mut self, fast_signals: &[Vec4]) {
         let grid = self.grid;
-        let GustBands { crossover_hz, short_period_s } = GustBands::of_period(self.period_s());
+        let GustBands { crossover_hz, short_period_s } = self.bands;
         let mut filter = PeriodicFilter::new(fast_signals.len());
         let spectra = [filter.spectra(fast_signals)];
         let bin_hz = 1.0 / short_period_s;
@@ -224,11 +227,8 @@ impl ResponseTable {
 
     /// A time in a series of so many samples a period.
     fn spline(&self, place: &TablePlace, samples: usize, is_high: bool) -> SplinePlace {
-        let periods = if is_high {
-            place.fast_tau_s / GustBands::of_period(self.period_s()).short_period_s
-        } else {
-            place.tau_s / self.period_s()
-        };
+        let periods =
+            if is_high { place.fast_tau_s / self.bands.short_period_s } else { place.tau_s / self.period_s() };
         SplinePlace::new(periods * samples as f64, samples)
     }
 }

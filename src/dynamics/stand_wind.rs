@@ -122,12 +122,6 @@ impl StandWind {
         self.open.speed_m_s
     }
 
-    /// What share of the open wind reaches the tree.
-    #[must_use]
-    pub fn exposure(&self) -> f32 {
-        self.exposure
-    }
-
     /// Friction velocity above the stand, by the mean speed of the table's wind.
     #[must_use]
     pub fn friction(&self) -> f32 {

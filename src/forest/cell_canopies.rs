@@ -5,7 +5,7 @@ use crate::wind::Canopy;
 use bevy::{
     math::{DVec2, FloatExt},
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{AsyncComputeTaskPool, Task},
 };
 use std::sync::Arc;
 
@@ -58,11 +58,6 @@ fn between(a: &Canopy, b: &Canopy, share: f32) -> Canopy {
         frontal_area_index: a.frontal_area_index.lerp(b.frontal_area_index, share),
         exposure: std::array::from_fn(|number| a.exposure[number].lerp(b.exposure[number], share)),
     }
-}
-
-/// Takes a cell's stand, if it has been worked out.
-pub(super) fn finished(task: &mut CanopyTask) -> Option<CellCanopies> {
-    block_on(poll_once(task))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A near cell: which of its trees stand, which are still to come, and which are of the plan before.
 
 use super::{
-    cell_canopies::{CanopyTask, CellCanopies, finished},
+    cell_canopies::{CanopyTask, CellCanopies},
     extent::Extent,
 };
 use crate::{
@@ -9,7 +9,10 @@ use crate::{
     tree::{Species, Tree},
     wind::Canopy,
 };
-use bevy::prelude::*;
+use bevy::{
+    prelude::*,
+    tasks::{block_on, poll_once},
+};
 
 /// A cell whose plants are entities.
 pub(super) struct NearCell {
@@ -65,7 +68,7 @@ impl NearCell {
         if self.canopies.as_ref().is_none_or(|(of, _)| *of != generation) {
             let task = self.canopy_task.take().filter(|(of, _)| *of == generation);
             let (_, mut task) = task.unwrap_or_else(|| (generation, work_out()));
-            match finished(&mut task) {
+            match block_on(poll_once(&mut task)) {
                 Some(canopies) => self.canopies = Some((generation, canopies)),
                 None => {
                     self.canopy_task = Some((generation, task));

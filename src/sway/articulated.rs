@@ -3,13 +3,12 @@
 use super::{
     active::{ActiveSway, FLUTTER_PERIOD_S, WeightedResponse, leaf_clock_s},
     components::InCanopy,
-    response::WindResponse,
 };
 use crate::{
     dynamics::{
         RestingLeaf,
         pose::{BeamPose, TreeInWind, TreePoser},
-        stand_wind::{LOW_SHARE, WindAtTree},
+        stand_wind::{LOW_SHARE, StandWind, WindAtTree},
     },
     tree::{
         Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Season, SpeciesModels, Tree, TreeBeams, TreeLeaves, TreeModel,
@@ -26,6 +25,8 @@ pub struct TreePose {
     wind: WindAtTree,
     /// One for each wind that blows: two while one fades into another.
     posers: [TreePoser; 2],
+    /// The same wind at the tree, for its leaves.
+    stands: [Option<StandWind>; 2],
     /// What the posers were made for.
     made_for: Option<(u64, AssetId<TreeModel>, GlobalTransform, f32, Canopy)>,
     free_angles: Vec<Vec3A>,
@@ -104,10 +105,12 @@ impl TreePose {
             return;
         }
         self.beams.resize(model.beams.len(), BeamPose::REST);
-        for (poser, WeightedResponse { response, .. }) in self.posers.iter_mut().zip(sway.now()) {
-            let to_wind = wind_from_world(response) * world_from_local(&stands);
+        let winds = self.posers.iter_mut().zip(&mut self.stands).zip(sway.now());
+        for ((poser, stand), WeightedResponse { response, .. }) in winds {
+            let to_wind = response.field.frame().wind_from_world() * world_from_local(&stands);
             let scale = uniform_scale(&stands);
             let (map, wind) = (response.basis.map(), response.beam_wind_in(&canopy));
+            *stand = Some(wind.stand);
             poser.prepare(&model.beams, &TreeInWind { map, wind, to_wind, scale, leaf_share });
         }
         self.made_for = Some(key);
@@ -116,15 +119,16 @@ impl TreePose {
     fn follow(&mut self, sway: &ActiveSway, time_s: f64, height_m: f32, stands: GlobalTransform) {
         let local_from_world = world_from_local(&stands).transpose();
         let height_m = height_m * uniform_scale(&stands);
-        let canopy = self.made_for.map(|(.., canopy)| canopy).unwrap_or_default();
         self.wind = WindAtTree::default();
         self.free_angles.clear();
         self.free_angles.resize(self.beams.len(), Vec3A::ZERO);
-        for (poser, WeightedResponse { response, weight }) in self.posers.iter().zip(sway.now()) {
+        let winds = self.posers.iter().zip(&self.stands).zip(sway.now());
+        for ((poser, stand), WeightedResponse { response, weight }) in winds {
             let place = response.place(stands.translation(), time_s);
             response.table.responses(&place, poser.rows(), &mut self.responses);
             poser.add_free_angles(&self.responses, weight, &mut self.free_angles);
-            let (stand, velocity) = (response.stand_wind(&canopy), response.table.velocity(&place));
+            let Some(stand) = stand else { continue };
+            let velocity = response.table.velocity(&place);
             let wind_at = |height_m: f32| {
                 let velocity = response.field.frame().to_world(stand.velocity(height_m, velocity));
                 weight * (local_from_world * velocity)
@@ -139,12 +143,6 @@ impl TreePose {
 /// The uniform scale nearest to that of a tree, without its sign.
 fn uniform_scale(stands: &GlobalTransform) -> f32 {
     stands.affine().matrix3.determinant().abs().cbrt()
-}
-
-/// The rotation from world axes to wind coordinates.
-fn wind_from_world(response: &WindResponse) -> Mat3 {
-    let frame = response.field.frame();
-    Mat3::from_cols(frame.along, Vec3::Y, frame.across).transpose()
 }
 
 /// The rotation of a tree, after a mirror image along x if it is mirrored.

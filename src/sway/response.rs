@@ -12,7 +12,7 @@ use crate::{
         stand_wind::StandWind,
         table_place::TablePlace,
     },
-    wind::{Canopy, GustBands, REFERENCE_HEIGHT_M, WindField, cross_flow_pressure},
+    wind::{Canopy, REFERENCE_HEIGHT_M, WindField, cross_flow_pressure},
 };
 use bevy::prelude::*;
 use std::sync::Arc;
@@ -111,8 +111,8 @@ impl WindResponse {
         let taps = self.field.lateral().taps(position.z);
         let tau_s = time_s - self.field.delay_s(position.x, position.z);
         let delay_s = f64::from(position.x) / f64::from(self.field.convective_speed_m_s());
-        let short_period_s = GustBands::of_period(self.field.period_s()).short_period_s;
-        let fast_tau_s = time_s - delay_s - short_period_s * FAST_PERIODS_A_METRE * f64::from(position.z);
+        let fast_tau_s =
+            time_s - delay_s - self.table.bands.short_period_s * FAST_PERIODS_A_METRE * f64::from(position.z);
         TablePlace { columns: taps.indices, weights: taps.weights, tau_s, fast_tau_s }
     }
 }

@@ -3,7 +3,7 @@
 //! Wind coordinates are (along, up, across): along = where the mean wind blows to, up = the world's Y,
 //! across = along x up. The frame is right-handed, as the world is.
 
-use bevy::math::{Dir2, Vec3};
+use bevy::math::{Dir2, Mat3, Vec3};
 
 /// Turns vectors between world coordinates and wind coordinates (along, up, across).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +24,12 @@ impl WindFrame {
     /// World vector to (along, up, across).
     pub fn to_wind(&self, world: Vec3) -> Vec3 {
         Vec3::new(world.dot(self.along), world.y, world.dot(self.across))
+    }
+
+    /// The rotation that turns world vectors to (along, up, across).
+    #[must_use]
+    pub fn wind_from_world(&self) -> Mat3 {
+        Mat3::from_cols(self.along, Vec3::Y, self.across).transpose()
     }
 
     /// (along, up, across) to world vector.

@@ -92,9 +92,7 @@ pub fn cpu_poses(
 ) -> Vec<BeamPose> {
     let mut poses = vec![BeamPose::REST; model.beams.len()];
     if let Some(wind) = sway.now().next().map(|wind| wind.response) {
-        let frame = wind.field.frame();
-        let wind_from_world = Mat3::from_cols(frame.along, Vec3::Y, frame.across).transpose();
-        let to_wind = wind_from_world * Mat3::from_quat(tree.rotation);
+        let to_wind = wind.field.frame().wind_from_world() * Mat3::from_quat(tree.rotation);
         let (map, scale, beam_wind) = (wind.basis.map(), tree.scale.y, wind.beam_wind_in(canopy));
         let poser = TreePoser::new(&model.beams, &TreeInWind { map, wind: beam_wind, to_wind, scale, leaf_share: 1.0 });
         let mut responses = Vec::new();

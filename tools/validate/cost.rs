@@ -11,12 +11,7 @@ use crate::{
 use bevy::{
     diagnostic::{Diagnostic, DiagnosticsStore},
     prelude::*,
-    render::{
-        RenderPlugin,
-        diagnostic::RenderDiagnosticsPlugin,
-        render_resource::WgpuFeatures,
-        settings::{RenderCreation, WgpuSettings},
-    },
+    render::diagnostic::RenderDiagnosticsPlugin,
     time::TimeUpdateStrategy,
 };
 use bevy_windwood::prelude::*;
@@ -29,8 +24,6 @@ use std::{
 const SIZE: (u32, u32) = (960, 540);
 /// Frames before those that count: levels and impostors settle, and the recorder fills.
 const WARM_UP_FRAMES: u32 = 4;
-/// Longest wait for a tree.
-const LONGEST_WAIT: Duration = Duration::from_secs(60);
 /// Frames that count.
 const FRAMES: u32 = 3;
 
@@ -84,16 +77,7 @@ struct Cost {
 
 fn measure(stand: &Stand, picture: &Path) -> Result<Cost, String> {
     let mut app = App::new();
-    let settings = WgpuSettings {
-        features: WgpuSettings::default().features | WgpuFeatures::PIPELINE_STATISTICS_QUERY,
-        ..default()
-    };
-    let render = RenderPlugin {
-        render_creation: RenderCreation::Automatic(Box::new(settings)),
-        synchronous_pipeline_compilation: true,
-        ..default()
-    };
-    app.add_plugins((capture::headless_engine(None).set(render), WindwoodPlugins, RenderDiagnosticsPlugin));
+    app.add_plugins((capture::headless_engine(None), WindwoodPlugins, RenderDiagnosticsPlugin));
     capture::begin(&mut app)?;
     let camera = if stand.trees == 1 { spawn_tree(&mut app, stand)? } else { grid::spawn_forest(&mut app, stand)? };
     let target = capture::target(&mut app, SIZE);
@@ -116,14 +100,7 @@ fn spawn_tree(app: &mut App, stand: &Stand) -> Result<Entity, String> {
     world.spawn((Tree::new(species).with_age(stand.age_years).with_seed(1), Transform::default()));
     let place = Transform::from_xyz(0.0, 5.0, 24.0).looking_at(Vec3::Y * 9.0, Vec3::Y);
     let viewpoint = world.spawn((Viewpoint, place)).id();
-    let start = Instant::now();
-    while !(app.world().resource::<ActiveSway>().is_ready() && capture::forests_are_drawn(app.world_mut())) {
-        app.update();
-        std::thread::sleep(Duration::from_millis(1));
-        if start.elapsed() > LONGEST_WAIT {
-            return Err(format!("the tree was not ready after {LONGEST_WAIT:?}"));
-        }
-    }
+    grid::wait_until_drawn(app)?;
     Ok(viewpoint)
 }
 

@@ -104,10 +104,8 @@ struct Instance<'a> {
 
 impl<'a> Instance<'a> {
     fn new(model: &'a TreeModel, wind: &'a WindResponse, height_m: f32, is_mirrored: bool) -> Self {
-        let frame = wind.field.frame();
-        let from_world = Mat3::from_cols(frame.along, Vec3::Y, frame.across).transpose();
         let mirror = Mat3::from_diagonal(Vec3::new(if is_mirrored { -1.0 } else { 1.0 }, 1.0, 1.0));
-        let to_wind = from_world * Mat3::from_quat(Quat::from_rotation_y(0.7)) * mirror;
+        let to_wind = wind.field.frame().wind_from_world() * Mat3::from_quat(Quat::from_rotation_y(0.7)) * mirror;
         let scale = height_m / model.height_m();
         let tree = TreeInWind { map: wind.basis.map(), wind: wind.beam_wind(), to_wind, scale, leaf_share: 1.0 };
         let poser = TreePoser::new(&model.beams, &tree);

@@ -144,15 +144,21 @@ pub fn spawn_forest(app: &mut App, stand: &Stand) -> Result<Entity, String> {
     let place =
         Transform::from_xyz(0.0, EYE_HEIGHT_M, half_m + 10.0).looking_at(Vec3::new(0.0, 0.0, half_m - 150.0), Vec3::Y);
     let viewpoint = world.spawn((Viewpoint, place)).id();
+    wait_until_drawn(app)?;
+    Ok(viewpoint)
+}
+
+/// Waits until there is wind, and all that is wanted of forests and trees is drawn.
+pub fn wait_until_drawn(app: &mut App) -> Result<(), String> {
     let start = Instant::now();
     while !(app.world().resource::<ActiveSway>().is_ready() && capture::forests_are_drawn(app.world_mut())) {
         app.update();
         std::thread::sleep(Duration::from_millis(1));
         if start.elapsed().as_secs_f64() > TIMEOUT_S {
-            return Err(format!("the forest was not ready after {TIMEOUT_S} s"));
+            return Err(format!("the trees were not ready after {TIMEOUT_S} s"));
         }
     }
-    Ok(viewpoint)
+    Ok(())
 }
 
 /// Level ground, a sun with shadows, and a fresh breeze.

@@ -6,7 +6,6 @@ use crate::{
         response::TableRow,
     },
     sway::WindResponse,
-    wind::GustBands,
 };
 
 /// Rows of `vec4` before where each row of the table is; `HEADER` of `render/shaders/wind.wesl`.
@@ -21,7 +20,6 @@ pub(crate) fn pack_wind(wind: &WindResponse) -> Vec<u8> {
     let spacing = wind.field.settings().resolution.column_spacing_m;
     let [a, b, c] = grid.damping_mix();
     let [whole, middle, part] = grid.natural_admittances;
-    let short_period_s = GustBands::of_period(table.period_s()).short_period_s;
     let header: [[f32; 4]; HEADER] = [
         [along[0], along[1], along[2], wind.field.convective_speed_m_s()],
         [across[0], across[1], across[2], spacing],
@@ -35,7 +33,7 @@ pub(crate) fn pack_wind(wind: &WindResponse) -> Vec<u8> {
             grid.classes.first_fast() as f32,
             table.rows.len() as f32,
         ],
-        [whole, middle, part, short_period_s as f32],
+        [whole, middle, part, table.bands.short_period_s as f32],
     ];
     // A texel is four rows.
     let first = HEADER + table.rows.len() + 1 + 4 * map.size() * map.size();
