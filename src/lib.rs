@@ -100,7 +100,7 @@ pub mod prelude {
         Ground, Viewpoint, WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
         fire::{Fire, FireLook, FireShape},
         forest::{Forest, ForestGround, ForestSettings},
-        grass::{GrassGround, GrassLook, GrassPatch, GrassResponse, Sward, Tuft},
+        grass::{GrassField, GrassGround, GrassLook, GrassPatch, GrassResponse, Sward, Tuft},
         sway::{ActiveSway, InCanopy, SwaySettings},
         terrain::{GroundLook, Terrain, TerrainSettings},
         tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Season, Species, Tree, TreeBeams, TreeLeaves},

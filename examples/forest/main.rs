@@ -11,6 +11,7 @@
 //! `cargo run --example forest -- --help` lists the options.
 
 mod large;
+mod meadow;
 mod options;
 mod scene;
 mod small;

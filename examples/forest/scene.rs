@@ -1,7 +1,7 @@
 //! Ground, sky, sun and trees.
 
 use crate::{
-    large,
+    large, meadow,
     options::{Options, View},
     small,
     support::{
@@ -103,6 +103,7 @@ fn spawn_scene(
     } else {
         let places = small::places(landscape, options.trees, options.scene.wind.seed);
         small::spawn_trees(&mut commands, &assets, &places);
+        meadow::spawn_meadow(&mut commands, landscape, options.trees, options.scene.wind.seed);
     }
     let finest_cell_m = FINEST_CELL_M;
     commands.spawn((

@@ -1,12 +1,18 @@
 //! Neutral surroundings: a level green floor, a plain sky, a sun behind the camera to the right, and where to look from.
 
-use crate::support::sky;
+use crate::support::sky::{self, SkyLight};
 use bevy::{light::CascadeShadowConfigBuilder, prelude::*};
 
 /// Direction to the sun.
 const SUN: Vec3 = Vec3::new(0.65, 0.75, 0.55);
 const HORIZON: Vec3 = Vec3::new(1.45, 1.55, 1.65);
 const ZENITH: Vec3 = Vec3::new(0.55, 0.85, 1.45);
+const SKY_LIGHT: SkyLight = SkyLight {
+    zenith: Vec3::new(0.68, 0.84, 1.10),
+    horizon: Vec3::new(0.62, 0.66, 0.68),
+    ground: Vec3::new(0.24, 0.26, 0.14),
+    brightness: 850.0,
+};
 /// Vertical field of view, rad.
 const FIELD_OF_VIEW_RAD: f32 = 0.6;
 
@@ -43,11 +49,7 @@ pub fn spawn(
         CascadeShadowConfigBuilder { num_cascades: 1, maximum_distance: 160.0, ..default() }.build(),
         Transform::from_translation(SUN).looking_at(Vec3::ZERO, Vec3::Y),
     ));
-    commands.insert_resource(GlobalAmbientLight {
-        color: Color::srgb(0.78, 0.86, 1.0),
-        brightness: 700.0,
-        ..default()
-    });
+    SKY_LIGHT.give_to_cameras(&mut commands);
     commands.insert_resource(bevy::light::DirectionalLightShadowMap { size: 2048 });
 }
 

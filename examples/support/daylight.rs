@@ -1,6 +1,6 @@
 //! Sky, sun and haze of a clear afternoon.
 
-use super::sky;
+use super::sky::{self, SkyLight};
 use bevy::{
     light::CascadeShadowConfigBuilder,
     pbr::{DistanceFog, FogFalloff},
@@ -12,6 +12,13 @@ pub const SUN: Vec3 = Vec3::new(0.55, 0.62, 0.25);
 const HAZE: Color = Color::srgb(0.69, 0.78, 0.88);
 const ZENITH: Vec3 = Vec3::new(0.13, 0.32, 0.78);
 const HORIZON: Vec3 = Vec3::new(0.75, 0.90, 1.05);
+/// The light of that sky, and of grass in the sun below it.
+const SKY_LIGHT: SkyLight = SkyLight {
+    zenith: Vec3::new(0.62, 0.80, 1.10),
+    horizon: Vec3::new(0.52, 0.58, 0.60),
+    ground: Vec3::new(0.20, 0.22, 0.10),
+    brightness: 1050.0,
+};
 
 /// Fog that grows with the square of the distance: clear near by, blue on far ridges. At `distance_m` it takes two thirds.
 pub fn haze(distance_m: f32) -> DistanceFog {
@@ -49,11 +56,7 @@ pub fn spawn_daylight(
         .build(),
         Transform::from_translation(SUN).looking_at(Vec3::ZERO, Vec3::Y),
     ));
-    commands.insert_resource(GlobalAmbientLight {
-        color: Color::srgb(0.72, 0.84, 1.0),
-        brightness: 620.0,
-        ..default()
-    });
+    SKY_LIGHT.give_to_cameras(commands);
     commands.insert_resource(bevy::light::DirectionalLightShadowMap { size: 2048 });
 }
 

@@ -6,7 +6,7 @@ use super::{
     scene::Scene,
 };
 use bevy::prelude::*;
-use bevy_windwood::{prelude::*, terrain::TerrainChunks};
+use bevy_windwood::{grass::GrassFieldPatches, prelude::*, terrain::TerrainChunks};
 use image::RgbaImage;
 use std::time::{Duration, Instant};
 
@@ -75,12 +75,14 @@ fn is_ready<S: Scene>(world: &mut World) -> Result<bool, String> {
     }
     type Pending<T> = (With<T>, Without<Mesh3d>);
     let patches = world.query_filtered::<(), Pending<GrassPatch>>().iter(world).count();
+    let fields = world.query::<&GrassFieldPatches>().iter(world).all(GrassFieldPatches::is_complete);
     let fires = world.query_filtered::<(), Pending<Fire>>().iter(world).count();
     let has_ground = world.query::<&TerrainChunks>().iter(world).all(TerrainChunks::is_complete);
     let is_spawned = world.resource_scope(|world, scene: Mut<S>| scene.is_spawned(world))?;
     Ok(is_spawned
         && world.resource::<ActiveSway>().is_ready()
         && has_ground
+        && fields
         && patches + fires == 0
         && capture::forests_are_drawn(world))
 }

@@ -1,6 +1,7 @@
-//! A sky: a dome around the scene with a colour for each direction.
+//! A sky: a dome around the scene with a colour for each direction, and the light that comes from it.
 
 use bevy::{
+    ecs::lifecycle::Add,
     light::{NotShadowCaster, NotShadowReceiver},
     mesh::VertexAttributeValues,
     prelude::*,
@@ -22,4 +23,36 @@ pub fn dome(radius_m: f32, [sectors, stacks]: [u32; 2], colour: impl Fn(Vec3) ->
 pub fn bundle(dome: Mesh, meshes: &mut Assets<Mesh>, materials: &mut Assets<StandardMaterial>) -> impl Bundle + use<> {
     let air = StandardMaterial { unlit: true, fog_enabled: false, cull_mode: None, ..default() };
     (Mesh3d(meshes.add(dome)), MeshMaterial3d(materials.add(air)), NotShadowCaster, NotShadowReceiver)
+}
+
+/// Light from all around: linear RGB that falls on what faces the zenith, the horizon and the ground, and how bright that is, cd/m^2.
+#[derive(Clone, Copy)]
+pub struct SkyLight {
+    pub zenith: Vec3,
+    pub horizon: Vec3,
+    pub ground: Vec3,
+    pub brightness: f32,
+}
+
+impl SkyLight {
+    /// Gives this light to every camera that is there or comes, in place of an ambient light that is the same from everywhere.
+    pub fn give_to_cameras(self, commands: &mut Commands) {
+        commands.insert_resource(GlobalAmbientLight::NONE);
+        commands.queue(move |world: &mut World| {
+            let light = self.environment(&mut world.resource_mut::<Assets<Image>>());
+            let cameras: Vec<Entity> = world.query_filtered::<Entity, With<Camera3d>>().iter(world).collect();
+            for camera in cameras {
+                world.entity_mut(camera).insert(light.clone());
+            }
+            world.add_observer(move |camera: On<Add<Camera3d>>, mut commands: Commands| {
+                commands.entity(camera.entity).insert(light.clone());
+            });
+        });
+    }
+
+    fn environment(self, images: &mut Assets<Image>) -> EnvironmentMapLight {
+        let colours = [self.zenith, self.horizon, self.ground].map(|it| Color::linear_rgb(it.x, it.y, it.z));
+        let [zenith, horizon, ground] = colours;
+        EnvironmentMapLight::hemispherical_gradient(images, zenith, horizon, ground).with_intensity(self.brightness)
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::{
     components::{GrassPatch, Meadow},
+    field::GrassField,
     material::{GrassMaterial, base_material, grass_material},
     mesh::{bounds, still_mesh, swaying_mesh},
 };
@@ -12,6 +13,7 @@ use crate::{
 use bevy::{
     asset::embedded_asset,
     camera::{primitives::Aabb, visibility::NoAutoAabb},
+    light::NotShadowCaster,
     pbr::MaterialPlugin,
     prelude::*,
     shader::load_shader_library,
@@ -90,9 +92,10 @@ fn show_patches(
     mut meshes: ResMut<Assets<Mesh>>,
     mut swaying: ResMut<Assets<GrassMaterial>>,
     mut still: ResMut<Assets<StandardMaterial>>,
-    mut tasks: Query<(Entity, &mut MeshTask)>,
+    mut tasks: Query<(Entity, &mut MeshTask, Option<&ChildOf>)>,
+    fields_without_shadow: Query<(), (With<GrassField>, With<NotShadowCaster>)>,
 ) {
-    for (entity, mut making) in &mut tasks {
+    for (entity, mut making, parent) in &mut tasks {
         let Some((mesh, bounds)) = block_on(poll_once(&mut making.task)) else { continue };
         let patch = &making.meadow.patch;
         let mut entity = commands.entity(entity);
@@ -103,6 +106,9 @@ fn show_patches(
             NoAutoAabb,
             Shown(making.meadow.blades.clone()),
         ));
+        if parent.is_some_and(|parent| fields_without_shadow.contains(parent.parent())) {
+            entity.insert(NotShadowCaster);
+        }
         if capabilities.sways {
             entity.insert(MeshMaterial3d(swaying.add(grass_material(patch, &buffers))));
         } else {

@@ -17,7 +17,7 @@ use crate::{
     },
     tree::Tree,
 };
-use bevy::{camera::visibility::RenderLayers, mesh::MeshTag, prelude::*};
+use bevy::{camera::visibility::RenderLayers, light::NotShadowCaster, mesh::MeshTag, prelude::*};
 
 /// What the meshes of a tree follow from.
 type Drawn = (
@@ -49,11 +49,15 @@ pub(crate) fn update_tree_meshes(
         let meshes = meshes.into_iter().flat_map(TreeMeshes::iter);
         let is_same = |before: &LodSelection| (before.lod, before.is_fading) == (selection.lod, selection.is_fading);
         if before.as_ref().is_some_and(is_same) {
-            // Only the impostor comes or goes.
+            // Only an impostor comes or goes.
             let visibility = mesh_visibility(selection);
+            let has_caster_changed = before.is_some_and(|it| it.is_shadow_impostor != selection.is_shadow_impostor);
             meshes.for_each(|mesh| {
                 if let Ok(mut it) = visibilities.get_mut(mesh) {
                     it.set_if_neq(visibility);
+                }
+                if has_caster_changed {
+                    set_caster(&mut commands.entity(mesh), !selection.is_shadow_impostor);
                 }
             });
             drawn.bypass_change_detection().selection = Some(*selection);
@@ -76,6 +80,15 @@ pub(crate) fn update_tree_meshes(
 
 fn mesh_visibility(selection: &LodSelection) -> Visibility {
     if selection.is_impostor { Visibility::Hidden } else { Visibility::Inherited }
+}
+
+/// Has a mesh cast shadows, or not.
+fn set_caster(mesh: &mut EntityCommands, casts_shadow: bool) {
+    if casts_shadow {
+        mesh.remove::<NotShadowCaster>();
+    } else {
+        mesh.insert(NotShadowCaster);
+    }
 }
 
 /// Spawns the meshes of a tree.
@@ -133,6 +146,9 @@ impl MeshSpawner<'_> {
             Some(swaying) if row.is_some() => commands.spawn((entity, MeshMaterial3d(swaying.clone()))),
             _ => commands.spawn((entity, MeshMaterial3d(mesh.materials.still.clone()))),
         };
+        if self.selection.is_shadow_impostor {
+            spawned.insert(NotShadowCaster);
+        }
         insert_layers_and_culling(&mut spawned, self.layers, self.capabilities);
     }
 }

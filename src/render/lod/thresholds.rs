@@ -29,6 +29,8 @@ pub(crate) struct LodSelection {
     pub is_fading: bool,
     /// Whether the impostor alone stands for the tree, and nothing of it is drawn or posed.
     pub is_impostor: bool,
+    /// Whether its impostor alone casts its shadow.
+    pub is_shadow_impostor: bool,
 }
 
 /// How far a tree is from the nearest viewer.
@@ -48,6 +50,8 @@ pub(crate) struct LodThresholds {
     pub fade: f32,
     /// From here on impostors cast the shadows of trees in the maps of suns, per metre of their height.
     pub shadow_end: f32,
+    /// From here on trees with an impostor cast no shadow themselves, per metre of their height.
+    caster_end: f32,
     margin: f32,
 }
 
@@ -63,7 +67,13 @@ impl LodThresholds {
             LevelStyle::Thinned => settings.shadow_impostors_from_heights,
             LevelStyle::Paper | LevelStyle::Full => NEVER_M,
         };
-        Self { ends, fade: settings.fade, shadow_end, margin: settings.screen_sizes.margin }
+        let margin = settings.screen_sizes.margin;
+        Self { ends, fade: settings.fade, shadow_end, caster_end: shadow_end, margin }
+    }
+
+    /// The same where lamps have shadow maps, in which impostors stand for no tree.
+    pub fn with_lamps(self) -> Self {
+        Self { caster_end: NEVER_M, ..self }
     }
 
     /// The selection for a tree of a height, m, with `count` levels, after the selection before.
@@ -71,7 +81,7 @@ impl LodThresholds {
         let last = count.saturating_sub(1).min(MOST_LEVELS as u8 - 1);
         for lod in 0..last {
             let end_m = self.ends[usize::from(lod)] * height_m;
-            let fading = LodSelection { lod, is_fading: true, is_impostor: false };
+            let fading = LodSelection { lod, is_fading: true, ..default() };
             let margin = if before == Some(fading) { self.margin } else { 0.0 };
             if distance_m < (end_m * (1.0 - self.fade) - slack_m(end_m)) * (1.0 - margin) {
                 return LodSelection { lod, ..default() };
@@ -98,7 +108,8 @@ impl LodThresholds {
             |distance_m: f32, end_m: f32| distance_m > (end_m * (1.0 + self.fade) + slack_m(end_m)) * (1.0 + margin);
         let is_impostor = is_beyond(distance.m, impostor_from_m)
             || is_beyond(distance.scaled_m, self.ends[MOST_LEVELS - 1] * height_m * HEIGHT_TOLERANCE);
-        LodSelection { is_impostor, ..selection }
+        let is_shadow_impostor = is_beyond(distance.scaled_m, self.caster_end * height_m * HEIGHT_TOLERANCE);
+        LodSelection { is_impostor, is_shadow_impostor, ..selection }
     }
 
     /// The selection for a tree whose material cannot fade: one level at a time, and no impostor.
@@ -155,7 +166,7 @@ mod tests {
                         other != end && (distance_m / other_m - 1.0).abs() < thresholds.fade + 0.3
                     };
                     if fades && !(0..2).any(others) {
-                        prop_assert_eq!(next, LodSelection { lod: end, is_fading: true, is_impostor: false });
+                        prop_assert_eq!(next, LodSelection { lod: end, is_fading: true, ..default() });
                     }
                 }
             }
@@ -186,9 +197,22 @@ mod tests {
         };
         // Impostors begin at 200 m, and are complete there.
         assert!(!is_impostor(200.0 * (1.0 + thresholds.fade), None) && is_impostor(230.0, None));
-        let before = LodSelection { lod: 2, is_fading: false, is_impostor: true };
+        let before = LodSelection { lod: 2, is_impostor: true, ..default() };
         assert!(is_impostor(220.0, Some(before)) && !is_impostor(200.0, Some(before)));
         assert!(!thresholds.select(1e6, 20.0, 3, None).is_impostor);
+    }
+
+    #[test]
+    fn trees_cast_no_shadow_themselves_where_their_impostor_does_but_for_lamps() {
+        let at = |thresholds: LodThresholds, heights: f32| {
+            let distance = LodDistance { m: 20.0 * heights, scaled_m: 20.0 * heights };
+            thresholds.select_before_impostor(distance, 20.0, 3, IMPOSTOR_FROM_M, None).is_shadow_impostor
+        };
+        let thresholds = thresholds();
+        let hidden_from = thresholds.shadow_end * HEIGHT_TOLERANCE * (1.0 + thresholds.fade);
+        assert!(!at(thresholds, hidden_from) && at(thresholds, hidden_from + 0.3));
+        assert!(!at(thresholds.with_lamps(), 9.0), "a lamp's map would lack it");
+        assert!(!thresholds.select(180.0, 20.0, 3, None).is_shadow_impostor, "it has no impostor");
     }
 
     #[test]

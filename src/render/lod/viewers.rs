@@ -97,6 +97,7 @@ fn pixels_per_metre(camera: &Camera, projection: &Projection) -> Option<PixelsPe
 pub(crate) fn update_lod_viewers(
     settings: Res<ActiveLevelOfDetail>,
     viewpoints: Viewpoints,
+    lamps: (Query<&PointLight>, Query<&SpotLight>),
     mut viewers: ResMut<LodViewers>,
 ) {
     let viewers = viewers.bypass_change_detection();
@@ -125,6 +126,8 @@ pub(crate) fn update_lod_viewers(
         LodViewer { eye, scale }
     }));
     let thresholds = LodThresholds::new(&settings.0, Lens::with_pixels_at_1_m(px_at_1_m));
+    let has_lamps = lamps.0.iter().any(|it| it.shadow_maps_enabled) || lamps.1.iter().any(|it| it.shadow_maps_enabled);
+    let thresholds = if has_lamps { thresholds.with_lamps() } else { thresholds };
     let rests = |(now, then): (&LodViewer, &LodViewer)| now.eye.distance(then.eye) < STEP_M && now.scale == then.scale;
     let all_rest = viewers.viewers.len() == viewers.selected_for.len()
         && viewers.viewers.iter().zip(&viewers.selected_for).all(rests);
