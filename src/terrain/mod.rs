@@ -39,6 +39,7 @@
 //! | [`elevation`], `elevation_grid`, `gaps`, `elevation_map` | Maps: read, held, filled, interpolated. |
 //! | `drift`, `autocorrelation`, `lag_pairs`, `variogram`, `fit` | Estimates from maps. |
 //! | `spline_ground`, `layers` | Ground formed by control points; sums of grounds. |
+//! | `triangle_ground`, `mesh`, `ray_cast_ground` | A game's own ground: triangles, meshes, rays. |
 //! | `chunk_key`, `chunk`, `pyramid`, `cover`, `ground_texture` | What is drawn of it. |
 //! | `components`, `ecs`, `material`, `plugin` | Ground as entities, maps as assets. All others are plain arithmetic without an app. |
 
@@ -64,12 +65,15 @@ mod layers;
 mod line_process;
 #[cfg(feature = "render")]
 mod material;
+mod mesh;
 mod place;
 mod plugin;
 pub mod pyramid;
+mod ray_cast_ground;
 mod settings;
 mod spectral_sampling;
 mod spline_ground;
+mod triangle_ground;
 mod turning_bands;
 mod variogram;
 
@@ -85,8 +89,10 @@ pub use error::TerrainError;
 pub use fit::{Fit, fit_model, fit_models};
 pub use layers::Layers;
 pub use plugin::TerrainPlugin;
+pub use ray_cast_ground::RayCastGround;
 pub use settings::{Anisotropy, TurningBandsSettings};
 pub use spline_ground::{SplineGround, SplineGroundSettings, SplinePatch};
+pub use triangle_ground::TriangleGround;
 pub use turning_bands::TurningBands;
 pub use variogram::{LagClass, Variogram, VariogramSettings};
 #[cfg(feature = "render")]
