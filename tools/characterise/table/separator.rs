@@ -20,21 +20,40 @@ pub enum Separator {
 
 impl Separator {
     /// The separator with which most rows have two numbers. A comma may also be the decimal mark of a table with another separator; so of
-    /// comma and blanks that one is taken which makes numbers of more fields, and all others go before.
+    /// comma and blanks that one is taken which makes numbers of more fields, and all others go before. Where no row has two numbers, what
+    /// is in most rows separates.
     pub fn of(text: &str) -> Self {
+        let text = first_lines(text);
         let qualifies = |separator: &Self| separator.share_of_numbers(text).is_some();
-        if let Some(certain) = [Self::Tab, Self::Semicolon, Self::Bar].into_iter().find(qualifies) {
+        if let Some(certain) = Self::CERTAIN.into_iter().find(qualifies) {
             return certain;
         }
-        let [comma, blanks] =
-            [Self::Comma, Self::Blanks].map(|separator| separator.share_of_numbers(text).unwrap_or(0.0));
-        if blanks > comma { Self::Blanks } else { Self::Comma }
+        let [comma, blanks] = [Self::Comma, Self::Blanks].map(|separator| separator.share_of_numbers(text));
+        match (comma, blanks) {
+            (None, None) => {
+                Self::CERTAIN.into_iter().find(|separator| separator.is_in_most_rows(text)).unwrap_or(Self::Comma)
+            }
+            (comma, blanks) if blanks > comma => Self::Blanks,
+            _ => Self::Comma,
+        }
+    }
+
+    /// Those that are hardly ever anything else.
+    const CERTAIN: [Self; 3] = [Self::Tab, Self::Semicolon, Self::Bar];
+
+    fn is_in_most_rows(self, text: &str) -> bool {
+        let (mut rows, mut divided) = (0, 0);
+        for record in self.reader(text).records().map_while(Result::ok) {
+            rows += 1;
+            divided += usize::from(record.len() > 1);
+        }
+        2 * divided > rows
     }
 
     /// The share of fields that are numbers in rows with two numbers or more: `None` where these are less than half of all rows.
     fn share_of_numbers(self, text: &str) -> Option<f64> {
         let (mut rows, mut good, mut fields, mut numbers) = (0, 0, 0, 0);
-        for record in self.reader(&self.prepare(first_lines(text))).records().map_while(Result::ok) {
+        for record in self.reader(&self.prepare(text)).records().map_while(Result::ok) {
             rows += 1;
             let of_row = record.iter().filter(|field| parse(field).is_some()).count();
             if of_row >= 2 {
