@@ -11,6 +11,8 @@ pub const NARROWEST_M: f64 = 1e-3;
 const MOST_CORNERS: usize = 1000;
 /// Corners of the polygon that stands for a circle where areas are cut.
 const CIRCLE_CORNERS: u32 = 720;
+/// The share of a box by which its sides may lie beyond the edge.
+const ROUNDING: f64 = 1e-6;
 /// Places are inside if they are outside by less than this share of the window's size: coordinates were rounded.
 const SLACK: f64 = 1e-9;
 
@@ -140,8 +142,10 @@ impl Window {
         }
     }
 
-    /// Whether all of a box lies inside.
+    /// Whether all of a box lies inside, but for what rounding puts beyond the edge.
     pub fn contains_box(&self, min_m: DVec2, max_m: DVec2) -> bool {
+        let rounding_m = ROUNDING * (max_m - min_m);
+        let (min_m, max_m) = (min_m + rounding_m, max_m - rounding_m);
         let corners = [min_m, DVec2::new(max_m.x, min_m.y), max_m, DVec2::new(min_m.x, max_m.y)];
         if !corners.into_iter().all(|corner| self.contains(corner)) {
             return false;

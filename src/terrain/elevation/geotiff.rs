@@ -11,7 +11,7 @@ use crate::{
 };
 use std::io::Cursor;
 use tiff::{
-    ColorType, TiffError,
+    ColorType, TiffError, TiffUnsupportedError,
     decoder::{Decoder, DecodingResult, Limits},
     tags::Tag,
 };
@@ -55,7 +55,15 @@ fn limits() -> Limits {
 }
 
 fn unreadable(error: TiffError) -> TerrainError {
-    TerrainError::Unreadable { reason: error.to_string() }
+    match error {
+        TiffError::UnsupportedError(TiffUnsupportedError::UnsupportedCompressionMethod(method)) => {
+            TerrainError::Format {
+                found: format!("a TIFF compressed by {method:?}"),
+                allowed: "one compressed by deflate, LZW or PackBits, or not at all (gdal_translate -co COMPRESS=DEFLATE makes one)",
+            }
+        }
+        other => TerrainError::Unreadable { reason: other.to_string() },
+    }
 }
 
 /// Refuses pictures: colours, several bands, 8 bits whose heights are not told.

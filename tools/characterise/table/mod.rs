@@ -22,7 +22,7 @@ mod separator;
 mod tests;
 mod text;
 
-pub use rows::{MOST_POINTS, Table, read_table};
+pub use rows::{Table, read_table};
 
 /// Greatest size of a file: a million lines of 256 bytes.
 pub const MOST_BYTES: u64 = 256 << 20;

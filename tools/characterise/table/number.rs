@@ -19,9 +19,11 @@ pub fn is_missing(field: &str) -> bool {
 
 /// A finite number and its decimal mark. With one comma and no point the comma is the mark.
 pub fn parse(field: &str) -> Option<(f64, Decimal)> {
+    // Typesetting has a minus of its own.
+    let field = &field.replace('\u{2212}', "-");
     let (text, decimal) = match (field.matches(',').count(), field.contains('.')) {
-        (0, true) => (field.to_owned(), Decimal::Point),
-        (0, false) => (field.to_owned(), Decimal::Whole),
+        (0, true) => (field.clone(), Decimal::Point),
+        (0, false) => (field.clone(), Decimal::Whole),
         (1, false) => (field.replace(',', "."), Decimal::Comma),
         _ => return None,
     };

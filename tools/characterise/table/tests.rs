@@ -1,6 +1,6 @@
 //! Tables as people have them: the given files, and more of their kind.
 
-use super::*;
+use super::{rows::MOST_POINTS, *};
 use crate::note::Note;
 use bevy::math::DVec2;
 use std::path::Path;

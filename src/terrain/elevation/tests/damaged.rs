@@ -104,5 +104,10 @@ fn files_of_other_kinds_are_refused_with_what_to_do() {
     assert!(error("a.png", b"no picture at all", &told()).contains("of no kind that is known"));
     assert!(error("a.hgt", b"PK\x03\x04....", &told()).contains("unpack it first"));
     assert!(error("a.tif", b"", &told()).contains("empty"));
+    let mut zstd = small_tiff();
+    // The entry of the compression, 259, of one short: 1 for none.
+    let entry = zstd.windows(8).position(|bytes| bytes == [3, 1, 3, 0, 1, 0, 0, 0]).unwrap();
+    zstd[entry + 8..entry + 10].copy_from_slice(&50_000_u16.to_le_bytes());
+    assert!(error("a.tif", &zstd, &told()).contains("gdal_translate -co COMPRESS=DEFLATE"));
     assert!(error("a.tif", b"II*\0", &told()).starts_with("the elevation file cannot be read"));
 }
