@@ -12,12 +12,18 @@ use tempfile::TempDir;
 
 #[path = "../examples/support/arguments.rs"]
 mod arguments;
+#[path = "characterise/given_files.rs"]
+mod given_files;
+#[path = "characterise/in_words.rs"]
+mod in_words;
 #[path = "../tools/characterise/note.rs"]
 #[expect(dead_code, reason = "the example prints notes, these tests read them")]
 mod note;
 #[path = "../tools/characterise/options.rs"]
 #[expect(dead_code, reason = "the example takes options over, these tests parse them")]
 mod options;
+#[path = "../tools/characterise/polygon.rs"]
+mod polygon;
 #[path = "../tools/characterise/table/mod.rs"]
 #[expect(dead_code, reason = "the example reads files with it, these tests text")]
 mod table;
@@ -272,129 +278,4 @@ fn bad_points_are_refused_in_one_line_that_names_file_line_and_value() {
     assert_eq!(of("x,y\n1,1\n"), "points.csv: there are 1 points, but must be at least 20");
     assert!(of(&"5,5\n".repeat(5000)).starts_with("points.csv: `plants in one quadrat` is 5000"));
     assert!(complaint(&folder, &["points", "none.csv", "--window", "0,0,60,40"]).starts_with("none.csv: "));
-}
-
-#[test]
-fn elevations_in_other_containers_are_characterised_alike() {
-    let folder = folder();
-    let rockies = found(&folder, &["terrain", ROCKIES, "--cell-size", "233", "--cell-size-z", "234"]);
-    let scale_m = number(&rockies["fits"][0]["scale_m"]);
-    let voids = ["--cell-size", "233", "--cell-size-z", "234", "--no-data"];
-    let cases: [(&str, &[&str]); 4] = [
-        ("metres-with-nodata.tif", &[]),
-        ("float-metres.tif", &[]),
-        ("voids-65535.png", &[&voids[..], &["65535"]].concat()),
-        ("signed-voids-read-as-unsigned.png", &[&voids[..], &["32768"]].concat()),
-    ];
-    for (name, options) in cases {
-        let json = found(&folder, &[&["terrain", &case(&format!("elevation/{name}"))], options].concat());
-        assert_eq!(json["map"]["cell_m"], serde_json::json!([233.0, 234.0]), "{name}");
-        let (least_m, greatest_m) = (number(&json["map"]["least_m"]), number(&json["map"]["greatest_m"]));
-        assert!(least_m >= 2280.0 && greatest_m <= 4262.0, "{name}: {least_m} to {greatest_m}");
-        let gaps = number(&json["map"]["cells_without_data"]);
-        let told = notes(&json);
-        assert_eq!(told.len(), usize::from(gaps > 0.0), "{told:?}");
-        assert!(told.iter().all(|note| note.starts_with(&format!("{gaps} of 28424 cells"))), "{told:?}");
-        let ratio = number(&json["fits"][0]["scale_m"]) / scale_m;
-        assert!((ratio - 1.0).abs() < 0.02, "{name}: a scale {ratio} times that of the whole map");
-    }
-    let json = found(&folder, &["terrain", &case("elevation/ascii-grid.asc")]);
-    assert_eq!(json["map"]["cell_m"], serde_json::json!([466.0, 466.0]));
-    let json = found(
-        &folder,
-        &["terrain", &case("elevation/eight-bit.png"), "--cell-size", "233", "--height-range", "2281,4261"],
-    );
-    assert_eq!((number(&json["map"]["least_m"]), number(&json["map"]["greatest_m"])), (2281.0, 4261.0));
-}
-
-#[test]
-fn values_that_look_like_no_data_are_warned_about() {
-    let folder = folder();
-    for (name, value) in [("voids-65535.png", 65535), ("signed-voids-read-as-unsigned.png", 32768)] {
-        let json = found(&folder, &["terrain", &case(&format!("elevation/{name}")), "--cell-size", "233"]);
-        let told = notes(&json);
-        assert!(told[0].starts_with('!') && told[0].ends_with(&format!("use --no-data {value}")), "{told:?}");
-    }
-}
-
-#[test]
-fn tables_are_read_and_what_was_left_out_is_told() {
-    let folder = folder();
-    let points = |name: &str| {
-        found(&folder, &["points", &case(&format!("tables/{name}")), "--window", "0,0,120,80", "--quadrats", "9x6"])
-    };
-    for name in ["semicolon-bom-names.csv", "census.csv", "tabs.tsv"] {
-        let json = points(name);
-        assert_eq!((json["points"].clone(), notes(&json).len()), (80.into(), 1), "{name}: {json:#}");
-    }
-    assert!(notes(&points("missing-values.csv"))[0].ends_with("line 42"));
-    let json = points("every-point-three-times.csv");
-    assert!(notes(&json)[0].starts_with("!160 points stand where others do"), "{json:#}");
-    let window = ["--window", "512000,4649000,512120,4649080"];
-    assert_eq!(found(&folder, &[&["points", &case("tables/utm.csv")], &window[..]].concat())["points"], 80);
-    let error = complaint(&folder, &["points", &case("tables/decimal-comma-unquoted.csv"), "--window", "0,0,120,80"]);
-    assert!(error.contains("line 2: the row has 4 fields, but the header has 2"), "{error}");
-    write(&folder, "own.csv", csv(random_points(1, 300)).replace("x,y", "stem_a,stem_b"));
-    let own = |columns: &str| found(&folder, &["points", "own.csv", "--window", "0,0,60,40", "--columns", columns]);
-    assert_eq!((own("stem_a,stem_b")["points"].clone(), own("1,2")["points"].clone()), (300.into(), 300.into()));
-}
-
-#[test]
-fn a_stand_that_no_law_describes_is_told_in_words() {
-    let folder = folder();
-    // A dense corner, a thin rest: no one law has both.
-    let dense = random_points(1, 1500).into_iter().map(|[x, y]| [0.2 * x, 0.5 * y]);
-    write(&folder, "uneven.csv", csv(dense.chain(random_points(2, 900))));
-    let json = found(&folder, &["points", "uneven.csv", "--window", "0,0,60,40"]);
-    assert_eq!(json["a_law_fits"], false);
-    assert!(notes(&json).last().is_some_and(|note| note.starts_with("!no law fits")), "{:?}", notes(&json));
-    write(&folder, "random.csv", csv(random_points(3, 2400)));
-    let json = found(&folder, &["points", "random.csv", "--window", "0,0,60,40"]);
-    assert_eq!(json["a_law_fits"], true);
-    assert!(notes(&json).last().is_some_and(|note| note.starts_with("the law ")), "{:?}", notes(&json));
-    let json = found(&folder, &["points", "random.csv", "--window", "0,0,80,40"]);
-    assert!(
-        notes(&json)[0].starts_with("!the window is wider than the points: towards its greatest x"),
-        "{:?}",
-        notes(&json)
-    );
-    let rounded = random_points(4, 600).into_iter().map(|point| point.map(f64::round));
-    write(&folder, "rounded.csv", csv(rounded));
-    let json = found(&folder, &["points", "rounded.csv", "--window", "0,0,60,40"]);
-    assert!(
-        notes(&json).iter().any(|note| note.starts_with("!places are given in steps of 1 m")),
-        "{:?}",
-        notes(&json)
-    );
-}
-
-#[test]
-fn quadrats_wholly_inside_a_round_or_polygonal_window_count() {
-    let folder = folder();
-    let in_circle = |[x, y]: &[f64; 2]| (x - 30.0).hypot(y - 20.0) <= 18.0;
-    let points: Vec<[f64; 2]> = random_points(5, 4000).into_iter().filter(in_circle).collect();
-    write(&folder, "plot.csv", csv(points.clone()));
-    let json = found(&folder, &["points", "plot.csv", "--window", "circle:30,20,18"]);
-    assert_eq!(json["points"], points.len());
-    let [columns, rows] = [0, 1].map(|side| number(&json["quadrats"][side]));
-    let inside = number(&json["quadrats_inside"]);
-    let share =
-        inside * number(&json["quadrat_m"][0]) * number(&json["quadrat_m"][1]) / number(&json["window_area_m2"]);
-    assert!(inside < columns * rows && (0.85..1.0).contains(&share), "{share} of the circle");
-    // A random pattern stays random: quadrats that are cut by the edge would hold too few.
-    assert_eq!(json["dispersion"]["verdict"], "random", "{}", json["dispersion"]);
-    let error = complaint(&folder, &["points", "plot.csv", "--window", "circle:30,20,15"]);
-    assert!(error.contains("is outside the window, but must be in a circle of radius 15 m"), "{error}");
-
-    // The corners of an octagon around the circle.
-    let corner = |corner: u32| {
-        let angle = f64::from(corner) * std::f64::consts::FRAC_PI_4;
-        [30.0 + 19.5 * angle.cos(), 20.0 + 19.5 * angle.sin()]
-    };
-    write(&folder, "corners.csv", csv((0..8).map(corner)));
-    let json = found(&folder, &["points", "plot.csv", "--window", "polygon:corners.csv"]);
-    assert_eq!(json["points"], points.len());
-    write(&folder, "bow.csv", csv([[0.0, 0.0], [60.0, 40.0], [60.0, 0.0], [0.0, 40.0]]));
-    let error = complaint(&folder, &["points", "plot.csv", "--window", "polygon:bow.csv"]);
-    assert_eq!(error, "bow.csv: the polygon crosses or touches itself: its edges 1 and 3");
 }

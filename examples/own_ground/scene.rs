@@ -47,7 +47,7 @@ impl Scene for OwnGroundScene {
         let above = |x: f32, z: f32, above_m: f32| {
             Vec3::new(x, height_m(DVec2::new(f64::from(x), f64::from(z))) as f32 + above_m, z)
         };
-        Transform::from_translation(above(22.0, 62.0, 3.5)).looking_at(above(0.0, 0.0, 5.0), Vec3::Y)
+        Transform::from_translation(above(52.0, 60.0, 4.5)).looking_at(above(6.0, 18.0, 3.0), Vec3::Y)
     }
 
     fn camera_effects() -> impl Bundle {

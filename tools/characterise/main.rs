@@ -20,6 +20,7 @@ mod note;
 mod options;
 mod pattern_picture;
 mod points;
+mod polygon;
 mod table;
 mod terrain;
 mod variogram_chart;

@@ -1,5 +1,6 @@
 //! The area in which plants were recorded: a rectangle, a circle or a polygon.
 
+use crate::polygon::{area, contains, crossing, cut};
 use bevy::math::DVec2;
 use std::f64::consts::{PI, TAU};
 
@@ -138,7 +139,7 @@ impl Window {
         match &self.shape {
             Shape::Rectangle => point.cmpge(self.min_m).all() && point.cmple(self.max_m).all(),
             Shape::Circle { centre_m, radius_m } => point.distance(*centre_m) <= radius_m + slack_m,
-            Shape::Polygon(corners) => polygon_contains(corners, point, slack_m),
+            Shape::Polygon(corners) => contains(corners, point, slack_m),
         }
     }
 
@@ -153,14 +154,14 @@ impl Window {
         let Shape::Polygon(polygon) = &self.shape else { return true };
         // An edge of the polygon may still pass through the box.
         let sides = [(Side::West, min_m.x), (Side::East, max_m.x), (Side::South, min_m.y), (Side::North, max_m.y)];
-        let inside = sides.into_iter().fold(polygon.clone(), |rest, (side, at)| cut(&rest, side, at, false));
+        let inside = sides.into_iter().fold(polygon.clone(), |rest, (side, at)| cut(&rest, -side.outwards(), at));
         let size_m = max_m - min_m;
         area(&inside) >= (1.0 - 1e-6) * size_m.x * size_m.y
     }
 
     /// The share of its area beyond a line across, which lies at x or y, towards one side.
     pub fn share_beyond(&self, side: Side, at_m: f64) -> f64 {
-        area(&cut(&self.outline(), side, at_m, true)) / area(&self.outline())
+        area(&cut(&self.outline(), side.outwards(), at_m)) / area(&self.outline())
     }
 
     /// Its corners, m; those of a fine polygon for a circle.
@@ -184,67 +185,6 @@ impl Window {
             Shape::Polygon(corners) => format!("a polygon of {} corners, {:.1} m2", corners.len(), self.area_m2()),
         }
     }
-}
-
-fn edges(corners: &[DVec2]) -> impl Iterator<Item = [DVec2; 2]> {
-    let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(|(a, b)| [*a, *b])
-}
-
-/// The area of a polygon, about its first corner, so that large coordinates do no harm.
-fn area(corners: &[DVec2]) -> f64 {
-    let Some(&first) = corners.first() else { return 0.0 };
-    0.5 * edges(corners).map(|[a, b]| (a - first).perp_dot(b - first)).sum::<f64>().abs()
-}
-
-/// The part of a polygon on one side of a line across (Sutherland and Hodgman): beyond it, or what is left. Of a polygon that is not convex
-/// parts may hang together by edges without width, which have no area.
-fn cut(corners: &[DVec2], side: Side, at_m: f64, is_beyond: bool) -> Vec<DVec2> {
-    let outwards = if is_beyond { side.outwards() } else { -side.outwards() };
-    let line = outwards.dot(DVec2::splat(at_m));
-    let depth = |corner: DVec2| outwards.dot(corner) - line;
-    let mut kept = Vec::new();
-    for [a, b] in edges(corners) {
-        let (of_a, of_b) = (depth(a), depth(b));
-        if of_a >= 0.0 {
-            kept.push(a);
-        }
-        if (of_a >= 0.0) != (of_b >= 0.0) {
-            kept.push(a + (b - a) * (of_a / (of_a - of_b)));
-        }
-    }
-    kept
-}
-
-/// Whether a point lies in a polygon, or nearer to its edge than `slack_m`.
-fn polygon_contains(corners: &[DVec2], at: DVec2, slack_m: f64) -> bool {
-    let crosses =
-        |[a, b]: &[DVec2; 2]| (a.y > at.y) != (b.y > at.y) && at.x < a.x + (at.y - a.y) / (b.y - a.y) * (b.x - a.x);
-    let is_near = |[a, b]: [DVec2; 2]| {
-        let along = ((at - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
-        at.distance(a + along * (b - a)) <= slack_m
-    };
-    edges(corners).filter(crosses).count() % 2 == 1 || edges(corners).any(is_near)
-}
-
-/// Two edges of a polygon that meet elsewhere than in a common corner.
-fn crossing(corners: &[DVec2]) -> Option<[usize; 2]> {
-    let edges: Vec<[DVec2; 2]> = edges(corners).collect();
-    for (first, a) in edges.iter().enumerate() {
-        for (second, b) in edges.iter().enumerate().skip(first + 2) {
-            let closes = first == 0 && second == edges.len() - 1;
-            if !closes && meet(*a, *b) {
-                return Some([first, second]);
-            }
-        }
-    }
-    None
-}
-
-fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
-    let apart = a.max(b).cmplt(c.min(d)).any() || c.max(d).cmplt(a.min(b)).any();
-    let side = |from: DVec2, to: DVec2, of: DVec2| (to - from).perp_dot(of - from);
-    !apart && side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
 }
 
 #[cfg(test)]

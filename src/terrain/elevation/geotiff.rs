@@ -124,7 +124,7 @@ fn in_single_precision(samples: DecodingResult) -> (Vec<f32>, Option<f64>) {
         DecodingResult::U16(samples) => (all(&samples, f32::from), Some(f64::from(u16::MAX))),
         DecodingResult::U32(samples) => (all(&samples, |sample| sample as f32), None),
         DecodingResult::U64(samples) => (all(&samples, |sample| sample as f32), None),
-        DecodingResult::F16(samples) => (all(&samples, |sample| sample.to_f32()), None),
+        DecodingResult::F16(samples) => (all(&samples, f32::from), None),
         DecodingResult::F32(samples) => (samples, None),
         DecodingResult::F64(samples) => (all(&samples, |sample| sample as f32), None),
         DecodingResult::I8(samples) => (all(&samples, f32::from), None),
