@@ -74,7 +74,7 @@ impl Separator {
     }
 
     /// A reader of [prepared](Self::prepare) text.
-    pub fn reader<'a>(self, text: &'a str) -> csv::Reader<&'a [u8]> {
+    pub fn reader(self, text: &str) -> csv::Reader<&[u8]> {
         let delimiter = match self {
             Self::Tab => b'\t',
             Self::Semicolon => b';',
