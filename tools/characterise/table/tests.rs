@@ -102,6 +102,8 @@ fn separators_are_found_out() {
         "1.5, -2\n300, 4.25",
         "1.5 -2\r\n300 4.25\r\n",
         "1.5;-2\r300;4.25\r",
+        "sep=;\nx;y\n1,5;-2\n300;4,25\n",
+        "Stems of plot 7, 2019\nx,y\n1.5,-2\n300,4.25\n",
         "\u{feff}x,y\n1.5,-2\n300,4.25",
         "# trees\r\nY, species, X\r\n-2, oak, 1.5\r\n4.25, fir, 3e2",
         "species;gx;gy\nQuercus robur;1,5;-2\n\"Fir; old\";300;4,25\n",
