@@ -102,7 +102,7 @@ pub mod prelude {
         forest::{Forest, ForestGround, ForestSettings},
         grass::{GrassField, GrassGround, GrassLook, GrassPatch, GrassResponse, Sward, Tuft},
         sway::{ActiveSway, InCanopy, SwaySettings},
-        terrain::{GroundLook, Terrain, TerrainSettings},
+        terrain::{GroundLook, Terrain, TerrainFile, TerrainSettings},
         tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Season, Species, Tree, TreeBeams, TreeLeaves},
         wind::{ActiveWind, Canopy, Wind, WindCell, WindClock},
     };
@@ -135,6 +135,7 @@ impl PluginGroup for WindwoodMinimalPlugins {
         PluginGroupBuilder::start::<Self>()
             .add(wind::WindPlugin)
             .add(tree::TreePlugin)
+            .add(terrain::TerrainPlugin)
             .add(sway::SwayPlugin)
             .add(grass::GrassPlugin)
             .add(fire::FirePlugin)

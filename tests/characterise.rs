@@ -12,12 +12,29 @@ use tempfile::TempDir;
 
 #[path = "../examples/support/arguments.rs"]
 mod arguments;
-#[path = "../tools/characterise/csv_points.rs"]
-#[expect(dead_code, reason = "the example reads files with it, these tests text")]
-mod csv_points;
+#[path = "characterise/given_files.rs"]
+mod given_files;
+#[path = "characterise/in_words.rs"]
+mod in_words;
+#[path = "../tools/characterise/note.rs"]
+#[expect(dead_code, reason = "the example prints notes, these tests read them")]
+mod note;
 #[path = "../tools/characterise/options.rs"]
+#[expect(dead_code, reason = "the example takes options over, these tests parse them")]
 mod options;
+#[path = "../tools/characterise/polygon.rs"]
+mod polygon;
+#[path = "../tools/characterise/table/mod.rs"]
+#[expect(dead_code, reason = "the example reads files with it, these tests text")]
+mod table;
+#[path = "../tools/characterise/window.rs"]
+#[expect(dead_code, reason = "the example counts in windows, these tests cut them")]
+mod window;
+#[path = "../tools/characterise/words.rs"]
+#[expect(dead_code, reason = "the example speaks of laws, these tests of places")]
+mod words;
 
+const CASES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/cases");
 const ROCKIES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/terrain/rmnp-dem-16bit.png");
 
 /// The example, which cargo builds beside the folder of the tests.
@@ -71,6 +88,20 @@ fn csv(points: impl IntoIterator<Item = [f64; 2]>) -> String {
 fn random_points(seed: u64, number: usize) -> Vec<[f64; 2]> {
     let random = &mut Xoshiro256PlusPlus::seed_from_u64(seed);
     (0..number).map(|_| [60.0 * random.random::<f64>(), 40.0 * random.random::<f64>()]).collect()
+}
+
+/// The path of a given file.
+fn case(name: &str) -> String {
+    format!("{CASES}/{name}")
+}
+
+/// The notes of a result, each behind `!` if it is a warning.
+fn notes(json: &Value) -> Vec<String> {
+    let note = |note: &Value| {
+        let mark = if note["is_warning"] == true { "!" } else { "" };
+        format!("{mark}{}", note["text"].as_str().expect("a text"))
+    };
+    json["notes"].as_array().expect("a list").iter().map(note).collect()
 }
 
 fn number(json: &Value) -> f64 {
@@ -179,10 +210,14 @@ fn bad_maps_are_refused_in_one_line_that_names_them() {
 
     let of = |file: &str| complaint(&folder, &["terrain", file, "--cell-size", "30"]);
     assert!(of("cut.png").starts_with("cut.png: the elevation file cannot be read: "), "{}", of("cut.png"));
-    assert!(of("text.png").starts_with("text.png: the elevation file cannot be read: "));
+    assert!(
+        of("text.png")
+            .starts_with("text.png: the elevation file is of no kind that is known, but must be a PNG, a GeoTIFF, ")
+    );
     assert_eq!(
         of("eight.png"),
-        "eight.png: the elevation file is a PNG with L8 samples, but must be a PNG with 16 bits of grey (L16)"
+        "eight.png: the elevation file is a PNG with L8 samples, but must be a PNG with 16 bits of grey (L16): 8 bits have 256 heights only, \
+         and do not say which; `--height-range LOW,HIGH` does"
     );
     assert!(of("level.png").starts_with("level.png: all elevations lie in one plane"));
     assert_eq!(of("dot.png"), "dot.png: `columns` is 1, but must be 2 to 16384");
@@ -199,7 +234,16 @@ fn bad_options_are_refused_in_one_line_that_names_them() {
         let error = terrain(&[&format!("--cell-size={bad}")]);
         assert!(error.contains(bad) && error.ends_with("expected a number from 0.001 to 7000 m"), "{error}");
     }
-    assert!(terrain(&[]).contains("--cell-size"));
+    assert_eq!(
+        terrain(&[]).split_once(": ").map(|(_, error)| error.to_owned()),
+        Some(
+            "`--cell-size` is not given, but must be given, in metres: the file does not have the size of its cells"
+                .to_owned()
+        )
+    );
+    assert!(terrain(&["--cell-size", "30", "--height-range", "9,3"]).contains("expected LOW below HIGH"));
+    assert!(terrain(&["--cell-size", "30", "--no-data", "none"]).ends_with("expected a number, or nan"));
+    assert!(terrain(&["--cell-size", "30", "--raw", "9x9"]).contains("but 9 x 9 need 162"));
     assert!(terrain(&["--cell-size", "30", "--metres-per-unit", "0"]).contains("0.000001 to 1000 m"));
     let unwritable = terrain(&["--cell-size", "30", "--out", &format!("{ROCKIES}/below/a/file.png")]);
     assert!(unwritable.contains("rmnp-dem-16bit.png/below/a: "), "{unwritable}");
@@ -224,7 +268,7 @@ fn bad_points_are_refused_in_one_line_that_names_file_line_and_value() {
         complaint(&folder, &["points", "points.csv", "--window", "0,0,60,40"])
     };
     let good = csv(random_points(1, 300));
-    assert_eq!(of(&(good.clone() + "1,NaN\n")), "points.csv: line 302: column 2 is `NaN`, but must be a finite number");
+    assert_eq!(of(&(good.clone() + "1,oak\n")), "points.csv: line 302: column 2 is `oak`, but must be a finite number");
     assert_eq!(
         of(&(good.clone() + "\n# far\n1,40.5\n")),
         "points.csv: line 304: the point [1, 40.5] is outside the window, but must be from [0, 0] to [60, 40]"

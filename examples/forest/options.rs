@@ -23,12 +23,12 @@ pub struct Options {
     /// Where to look from.
     #[arg(long, value_enum, default_value_t = View::Hillside)]
     pub view: View,
-    /// A 16-bit grey PNG of elevations in metres, first row northernmost.
+    /// A file of elevations: a GeoTIFF, an ESRI ASCII grid, an SRTM tile, or a PNG with 16 bits of grey in metres, first row northernmost.
     #[arg(long)]
     pub ground: Option<PathBuf>,
-    /// Distance between the elevations, m.
-    #[arg(long, default_value_t = 233.0, value_parser = cell_size)]
-    pub cell_size: f32,
+    /// Distance between the elevations, m. A PNG needs it, other files have it.
+    #[arg(long, value_parser = cell_size)]
+    pub cell_size: Option<f32>,
     #[command(flatten)]
     pub scene: SceneOptions,
 }

@@ -4,8 +4,8 @@ use bevy::{math::DVec2, prelude::*};
 use bevy_windwood::{
     Ground,
     terrain::{
-        CovarianceModel, ElevationGrid, ElevationMap, ElevationScale, Interpolation, Layers, MapPlacement,
-        SplineGround, SplineGroundSettings, TurningBands, TurningBandsSettings, chunk::drawn_height_m,
+        CovarianceModel, Elevation, ElevationSettings, Interpolation, Layers, MapPlacement, SplineGround,
+        SplineGroundSettings, TurningBands, TurningBandsSettings, chunk::drawn_height_m,
     },
 };
 use std::{path::Path, sync::Arc};
@@ -32,25 +32,29 @@ pub struct Landscape {
 }
 
 impl Landscape {
-    /// Reads elevations from a 16-bit grey PNG, or takes the shipped ones.
-    pub fn load(file: Option<&Path>, cell_m: f32) -> Result<Self, String> {
-        let (name, bytes) = match file {
+    /// Reads elevations from a file, with cells of `cell_m` or those that the file says, or takes the shipped ones.
+    pub fn load(file: Option<&Path>, cell_m: Option<f32>) -> Result<Self, String> {
+        let (name, elevation, place) = match file {
             Some(path) => {
-                let bytes = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
-                (path.display().to_string(), bytes)
+                let name = path.display().to_string();
+                let bytes = std::fs::read(path).map_err(|error| format!("{name}: {error}"))?;
+                let settings = ElevationSettings { cell_x_m: cell_m.map(f64::from), ..default() };
+                (name.clone(), Elevation::read(&name, &bytes, &settings), DVec2::splat(0.5))
             }
-            None => ("the shipped elevations".to_owned(), SHIPPED.to_vec()),
+            None => {
+                let settings = ElevationSettings::with_cells(SHIPPED_CELL_M.x, SHIPPED_CELL_M.y);
+                let name = "the shipped elevations".to_owned();
+                let elevation = Elevation::read(&name, SHIPPED, &settings);
+                (name, elevation, SHIPPED_PLACE)
+            }
         };
-        let (cell, place) = match file {
-            Some(_) => (DVec2::splat(f64::from(cell_m)), DVec2::splat(0.5)),
-            None => (SHIPPED_CELL_M, SHIPPED_PLACE),
-        };
-        let scale = ElevationScale { cell_x_m: cell.x, cell_z_m: cell.y, ..default() };
-        let grid = ElevationGrid::from_png(&bytes, &scale).map_err(|error| format!("{name}: {error}"))?;
+        let elevation = elevation.map_err(|error| format!("{name}: {error}"))?;
+        elevation.notices.iter().for_each(|notice| eprintln!("{name}: {notice}"));
+        let (grid, cell) = (&elevation.grid, elevation.grid.cell_m());
         let size_m = cell * (DVec2::new(grid.columns() as f64, grid.rows() as f64) - 1.0);
         let corner_m = -place * size_m;
         let placement = MapPlacement { west_m: corner_m.x, north_m: corner_m.y, interpolation: Interpolation::Bicubic };
-        let map = ElevationMap::new(grid, placement).map_err(|error| format!("{name}: {error}"))?;
+        let map = elevation.into_map(placement).map_err(|error| format!("{name}: {error}"))?;
         let layers: [Arc<dyn Ground>; 3] = [Arc::new(map), hills(0.22 * cell.x)?, bumps()?];
         Ok(Self { ground: Arc::new(Layers(layers.into())), corners_m: [corner_m, corner_m + size_m] })
     }

@@ -23,7 +23,7 @@ fn main() -> ExitCode {
     options.scene.image.choose_pictures_without_display(&options.scene.series.out);
     let landscape = match options.view {
         View::Patches => Landscape::five_patches(),
-        View::Valley | View::Summit | View::Aerial => Landscape::load(None, 0.0),
+        View::Valley | View::Summit | View::Aerial => Landscape::load(None, None),
     };
     match landscape {
         Ok(landscape) => support::scene::run(TerrainScene { options, landscape }),

@@ -1,6 +1,6 @@
 //! Ground as an entity.
 
-use super::{chunk_key::CHUNK_CELLS, cover::Cover, pyramid::PyramidShape};
+use super::{chunk_key::CHUNK_CELLS, cover::Cover, elevation_map::ElevationMap, pyramid::PyramidShape};
 use crate::{
     ground::Ground,
     setting::{SettingError, require},
@@ -34,6 +34,10 @@ impl Terrain {
         self
     }
 }
+
+/// Ground from a file of elevations: the entity gets its [`Terrain`] when the file is loaded, and a new one when it changes on disk.
+#[derive(Component, Clone, Debug)]
+pub struct TerrainFile(pub Handle<ElevationMap>);
 
 /// How finely ground is drawn, and how much is done for it in a frame.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

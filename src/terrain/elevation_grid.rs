@@ -1,6 +1,6 @@
 //! Elevations on a regular grid: what maps are read from, and what variograms are estimated from.
 
-use super::error::TerrainError;
+use super::{error::TerrainError, gaps::fill};
 use crate::{
     ground::Ground,
     setting::{SettingError, require},
@@ -23,6 +23,8 @@ pub struct ElevationGrid {
     rows: usize,
     cell_m: DVec2,
     heights_m: Vec<f32>,
+    /// Whether each height was measured; empty where all were.
+    is_measured: Vec<bool>,
 }
 
 impl ElevationGrid {
@@ -45,7 +47,26 @@ impl ElevationGrid {
         if let Some((index, &value)) = heights_m.iter().enumerate().find(|(_, height)| !height.is_finite()) {
             return Err(TerrainError::NotFinite { column: index % columns, row: index / columns, value });
         }
-        Ok(Self { columns, rows, cell_m, heights_m })
+        Ok(Self { columns, rows, cell_m, heights_m, is_measured: Vec::new() })
+    }
+
+    /// As [`new`](Self::new), with gaps where heights are NaN: cells without data. They are filled smoothly from their edges, for drawing
+    /// (the solution of Laplace's equation, as a membrane hangs), and left out of drifts and variograms.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); infinite heights are refused, and [`TerrainError::NoData`] where all heights are NaN.
+    pub fn with_gaps(columns: u32, rows: u32, cell_m: DVec2, mut heights_m: Vec<f32>) -> Result<Self, TerrainError> {
+        let mut is_measured: Vec<bool> = heights_m.iter().map(|height| !height.is_nan()).collect();
+        if !is_measured.is_empty() && !is_measured.contains(&true) {
+            return Err(TerrainError::NoData);
+        }
+        if is_measured.contains(&false) {
+            require_size(columns, rows)?;
+            fill(columns as usize, &mut heights_m);
+        } else {
+            is_measured.clear();
+        }
+        Ok(Self { is_measured, ..Self::new(columns, rows, cell_m, heights_m)? })
     }
 
     /// The elevations of `ground` at the corners of `columns` x `rows` places, of which `first` is the north-western.
@@ -89,6 +110,21 @@ impl ElevationGrid {
         &self.heights_m
     }
 
+    /// Number of cells without data, whose elevations are filled.
+    pub fn gaps(&self) -> usize {
+        self.is_measured.iter().filter(|is_measured| !**is_measured).count()
+    }
+
+    /// The elevations that were measured, row by row, m: without those of gaps.
+    pub fn measured_m(&self) -> impl Iterator<Item = f32> {
+        self.heights_m.iter().enumerate().filter(|(index, _)| self.is_measured(*index)).map(|(_, &height_m)| height_m)
+    }
+
+    /// Whether a height, by its place in [`heights_m`](Self::heights_m), was measured.
+    pub(super) fn is_measured(&self, index: usize) -> bool {
+        self.is_measured.get(index).copied().unwrap_or(true)
+    }
+
     /// The elevation at a sample, m; beyond the edge, that of the nearest.
     pub(super) fn nearest_m(&self, column: i64, row: i64) -> f32 {
         let column = column.clamp(0, self.columns as i64 - 1) as usize;
@@ -121,5 +157,21 @@ mod tests {
             "the elevation at column 0, row 1 is NaN, but must be a finite number"
         );
         assert!(error(16_384, 16_384, DVec2::ONE, &[]).starts_with("`columns x rows` is 268435456"));
+    }
+
+    #[test]
+    fn gaps_are_filled_and_known() {
+        let heights_m = vec![1.0, 2.0, 3.0, 4.0, f32::NAN, 6.0, 7.0, 8.0, 9.0];
+        let grid = ElevationGrid::with_gaps(3, 3, DVec2::ONE, heights_m).unwrap();
+        assert_eq!((grid.gaps(), grid.heights_m()[4]), (1, 5.0));
+        assert_eq!(grid.measured_m().collect::<Vec<_>>(), [1.0, 2.0, 3.0, 4.0, 6.0, 7.0, 8.0, 9.0]);
+        let whole = ElevationGrid::with_gaps(2, 2, DVec2::ONE, vec![0.0; 4]).unwrap();
+        assert_eq!(whole, ElevationGrid::new(2, 2, DVec2::ONE, vec![0.0; 4]).unwrap());
+        let error =
+            |heights: &[f32]| ElevationGrid::with_gaps(2, 2, DVec2::ONE, heights.to_vec()).unwrap_err().to_string();
+        assert_eq!(error(&[f32::NAN; 4]), "no cell has an elevation");
+        assert!(error(&[f32::NAN, 0.0, f32::INFINITY, 0.0]).contains("is inf"));
+        assert_eq!(error(&[f32::NAN, 0.0, 1.0]), "`heights_m` holds 3, but 2 x 2 need 4");
+        assert!(error(&[]).contains("holds 0"));
     }
 }

@@ -14,9 +14,13 @@ use crate::{
     interpolation::catmull_rom,
     setting::{SettingError, require},
 };
-use bevy::{math::DVec2, reflect::Reflect};
+use bevy::{
+    asset::Asset,
+    math::DVec2,
+    reflect::{Reflect, TypePath},
+};
 use serde::{Deserialize, Serialize};
-use std::ops::RangeInclusive;
+use std::{ops::RangeInclusive, sync::Arc};
 
 const PLACE_M: RangeInclusive<f64> = -1e9..=1e9;
 
@@ -43,10 +47,10 @@ pub enum Interpolation {
     Bilinear,
 }
 
-/// Ground read from a map.
-#[derive(Clone, Debug, PartialEq)]
+/// Ground read from a map; an asset, too ([`ElevationLoader`](super::ElevationLoader)). Clones share their samples.
+#[derive(Asset, TypePath, Clone, Debug, PartialEq)]
 pub struct ElevationMap {
-    grid: ElevationGrid,
+    grid: Arc<ElevationGrid>,
     placement: MapPlacement,
 }
 
@@ -58,7 +62,7 @@ impl ElevationMap {
     pub fn new(grid: ElevationGrid, placement: MapPlacement) -> Result<Self, SettingError> {
         require("west_m", placement.west_m, PLACE_M)?;
         require("north_m", placement.north_m, PLACE_M)?;
-        Ok(Self { grid, placement })
+        Ok(Self { grid: Arc::new(grid), placement })
     }
 
     /// The samples.

@@ -50,6 +50,9 @@ pub enum TerrainError {
         /// What was found.
         value: f32,
     },
+    /// A map has no cell with data.
+    #[error("no cell has an elevation")]
+    NoData,
     /// The ground is level, so that it has no covariance.
     #[error("all elevations lie in one plane, so that there is no covariance to estimate")]
     Level,

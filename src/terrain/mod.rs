@@ -15,12 +15,12 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! use bevy_windwood::{
 //!     Ground,
-//!     terrain::{CovarianceModel, ElevationGrid, ElevationScale, TurningBands, Variogram, VariogramSettings, fit_models},
+//!     terrain::{CovarianceModel, Elevation, ElevationSettings, TurningBands, Variogram, VariogramSettings, fit_models},
 //! };
 //!
-//! let scale = ElevationScale { cell_x_m: 233.0, cell_z_m: 234.0, ..Default::default() };
-//! let map = ElevationGrid::from_png(&std::fs::read("assets/terrain/rmnp-dem-16bit.png")?, &scale)?;
-//! let variogram = Variogram::estimate(&map, &VariogramSettings::default())?;
+//! let name = "assets/terrain/rmnp-dem-16bit.png";
+//! let map = Elevation::read(name, &std::fs::read(name)?, &ElevationSettings::with_cells(233.0, 234.0))?;
+//! let variogram = Variogram::estimate(&map.grid, &VariogramSettings::default())?;
 //! let best = fit_models(&variogram, &CovarianceModel::ALL)?[0];
 //! let ground = TurningBands::new(&best.settings(60.0, 7))?;
 //! println!("{} m", ground.height_m(bevy::math::DVec2::new(1e6, -2e5)));
@@ -36,11 +36,12 @@
 //! | `error` | What can be wrong with settings, maps and files. |
 //! | `place` | Places that may be asked about. |
 //! | `covariance`, `bessel_integrals`, `spectral_sampling`, `line_process`, `turning_bands`, `settings` | Random fields. |
-//! | `elevation_file`, `elevation_grid`, `elevation_map` | Maps: read, held, interpolated. |
-//! | `drift`, `autocorrelation`, `variogram`, `fit` | Estimates from maps. |
+//! | [`elevation`], `elevation_grid`, `gaps`, `elevation_map` | Maps: read, held, filled, interpolated. |
+//! | `drift`, `autocorrelation`, `lag_pairs`, `variogram`, `fit` | Estimates from maps. |
 //! | `spline_ground`, `layers` | Ground formed by control points; sums of grounds. |
+//! | `triangle_ground`, `mesh`, `ray_cast_ground` | A game's own ground: triangles, meshes, rays. |
 //! | `chunk_key`, `chunk`, `pyramid`, `cover`, `ground_texture` | What is drawn of it. |
-//! | `components`, `ecs`, `material`, `plugin` | Ground as entities. All others are plain arithmetic without an app. |
+//! | `components`, `ecs`, `material`, `plugin` | Ground as entities, maps as assets. All others are plain arithmetic without an app. |
 
 mod autocorrelation;
 mod bessel_integrals;
@@ -50,41 +51,48 @@ mod components;
 mod covariance;
 mod cover;
 mod drift;
-#[cfg(feature = "render")]
 mod ecs;
-mod elevation_file;
+pub mod elevation;
 mod elevation_grid;
 mod elevation_map;
 mod error;
 mod fit;
+mod gaps;
 #[cfg(feature = "render")]
 mod ground_texture;
+mod lag_pairs;
 mod layers;
 mod line_process;
 #[cfg(feature = "render")]
 mod material;
+mod mesh;
 mod place;
-#[cfg(feature = "render")]
 mod plugin;
 pub mod pyramid;
+mod ray_cast_ground;
 mod settings;
 mod spectral_sampling;
 mod spline_ground;
+mod triangle_ground;
 mod turning_bands;
 mod variogram;
 
-pub use components::{GroundLook, Terrain, TerrainSettings};
+pub use components::{GroundLook, Terrain, TerrainFile, TerrainSettings};
 pub use covariance::CovarianceModel;
 pub use cover::Cover;
 pub use drift::{Drift, FoundDrift};
-pub use elevation_file::{ElevationScale, RawSample};
+pub use ecs::elevation_loader::{ElevationLoadError, ElevationLoader, ElevationMapSettings};
+pub use elevation::{Elevation, ElevationNotice, ElevationSettings, RawLayout, RawSample};
 pub use elevation_grid::ElevationGrid;
 pub use elevation_map::{ElevationMap, Interpolation, MapPlacement};
 pub use error::TerrainError;
 pub use fit::{Fit, fit_model, fit_models};
 pub use layers::Layers;
+pub use plugin::TerrainPlugin;
+pub use ray_cast_ground::RayCastGround;
 pub use settings::{Anisotropy, TurningBandsSettings};
 pub use spline_ground::{SplineGround, SplineGroundSettings, SplinePatch};
+pub use triangle_ground::TriangleGround;
 pub use turning_bands::TurningBands;
 pub use variogram::{LagClass, Variogram, VariogramSettings};
 #[cfg(feature = "render")]

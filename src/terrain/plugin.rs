@@ -1,22 +1,48 @@
-//! Registers the drawing of the ground.
+//! Registers the ground: maps as assets, and what draws it.
 
 use super::{
-    components::{GroundLook, Terrain, TerrainSettings},
-    ecs::stream::{GroundTexture, TerrainChunk, TerrainChunks, begin_terrains, recolour_ground, stream_ground},
-    material::GroundMaterial,
+    ecs::{elevation_loader::ElevationLoader, terrain_file::raise_terrains_from_files},
+    elevation_map::ElevationMap,
 };
 use crate::{
-    plugin_checks::{has_renderer, require_renderer_before},
-    removal::remove_made,
+    plugin_checks::require_assets,
     schedule::{WindwoodSystems, configure_sets},
     timing::timed,
-    viewpoint::give_cameras_viewpoints,
 };
-use bevy::{asset::embedded_asset, pbr::MaterialPlugin, prelude::*};
+use bevy::prelude::*;
+#[cfg(feature = "render")]
+use {
+    super::{
+        components::{GroundLook, Terrain, TerrainSettings},
+        ecs::stream::{GroundTexture, TerrainChunk, TerrainChunks, begin_terrains, recolour_ground, stream_ground},
+        material::GroundMaterial,
+    },
+    crate::{
+        plugin_checks::{has_renderer, require_renderer_before},
+        removal::remove_made,
+        viewpoint::give_cameras_viewpoints,
+    },
+    bevy::{asset::embedded_asset, pbr::MaterialPlugin},
+};
+
+/// Loads [`ElevationMap`]s, and gives entities with a [`TerrainFile`](super::TerrainFile) their [`Terrain`](super::Terrain). It draws nothing.
+pub struct TerrainPlugin;
+
+impl Plugin for TerrainPlugin {
+    fn build(&self, app: &mut App) {
+        require_assets::<Self>(app);
+        configure_sets(app);
+        app.init_asset::<ElevationMap>().init_asset_loader::<ElevationLoader>();
+        let raise = timed!(app, raise_terrains_from_files);
+        app.add_systems(Update, raise.in_set(WindwoodSystems::Stream));
+    }
+}
 
 /// Draws [`Terrain`](super::Terrain). Without a renderer it does nothing.
+#[cfg(feature = "render")]
 pub struct TerrainDrawPlugin;
 
+#[cfg(feature = "render")]
 impl Plugin for TerrainDrawPlugin {
     fn build(&self, app: &mut App) {
         if !has_renderer(app) {

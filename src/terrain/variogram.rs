@@ -6,13 +6,13 @@
 //!
 //! It is estimated without bias from any window, unlike the covariance, which needs the mean of ground that the window
 //! does not show. All pairs of samples up to the longest lag are counted: the sum of products comes from one FFT (see
-//! `autocorrelation`), the sums of squares from a table of running sums.
+//! `autocorrelation`), the sums of squares from a table of running sums (`lag_pairs`). Pairs with a cell without data are left out.
 
 use super::{
-    autocorrelation::Autocorrelation,
     drift::{Drift, FoundDrift, remove_drift},
     elevation_grid::ElevationGrid,
     error::TerrainError,
+    lag_pairs::LagPairs,
 };
 use crate::setting::require;
 use bevy::{math::DVec2, reflect::Reflect};
@@ -85,14 +85,17 @@ impl Variogram {
         require("sectors", settings.sectors, SECTORS)?;
         require("columns x rows", grid.heights_m().len() as u64, 0..=MOST_SAMPLES)?;
         let (drift, values) = remove_drift(grid, settings.drift);
-        let variance_m2 = values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64;
+        let measured = (values.len() - grid.gaps()) as f64;
+        let variance_m2 = values.iter().map(|value| value * value).sum::<f64>() / measured;
         // What single precision leaves of a plane.
         let rounding_m = 1e-6 * grid.heights_m().iter().fold(0.0f32, |most, height| most.max(height.abs()));
         if variance_m2.sqrt() <= f64::from(rounding_m) {
             return Err(TerrainError::Level);
         }
-        let pairs = Pairs::new(&values, grid, settings.longest_lag);
-        Ok(Self { classes: pairs.classes(grid.cell_m(), settings.sectors), variance_m2, drift })
+        let (cell_m, longest_m) = (grid.cell_m(), longest_m(grid, settings.longest_lag));
+        let longest = [(longest_m / cell_m.x) as usize, (longest_m / cell_m.y) as usize];
+        let pairs = LagPairs::new(&values, grid, longest);
+        Ok(Self { classes: classes(&pairs, cell_m, longest_m, settings.sectors), variance_m2, drift })
     }
 
     /// The classes, by direction, then by distance.
@@ -116,102 +119,50 @@ impl Variogram {
     }
 }
 
-/// The pairs of a map, lag by lag.
-struct Pairs {
-    columns: usize,
-    rows: usize,
-    longest: [usize; 2],
-    longest_m: f64,
-    products: Autocorrelation,
-    squares: RunningSums,
+/// The longest lag, m: a share of the shorter side, but one cell at least, however small the map.
+fn longest_m(grid: &ElevationGrid, longest_lag: f64) -> f64 {
+    let cell_m = grid.cell_m();
+    let sides_m = cell_m * DVec2::new(grid.columns() as f64 - 1.0, grid.rows() as f64 - 1.0);
+    (longest_lag * sides_m.min_element()).max(cell_m.max_element() * 1.001)
 }
 
-impl Pairs {
-    fn new(values: &[f64], grid: &ElevationGrid, longest_lag: f64) -> Self {
-        let (columns, rows, cell_m) = (grid.columns(), grid.rows(), grid.cell_m());
-        let sides_m = cell_m * DVec2::new(columns as f64 - 1.0, rows as f64 - 1.0);
-        // One cell at least, however small the map.
-        let longest_m = (longest_lag * sides_m.min_element()).max(cell_m.max_element() * 1.001);
-        let longest =
-            [((longest_m / cell_m.x) as usize).min(columns - 1), ((longest_m / cell_m.y) as usize).min(rows - 1)];
-        let products = Autocorrelation::new(values, columns, longest[0], longest[1]);
-        let squares = RunningSums::new(values, columns);
-        Self { columns, rows, longest, longest_m, products, squares }
-    }
-
-    /// Sum of (z(x + h) - z(x))^2 / 2 over all pairs at a lag, and their number.
-    fn at(&self, column: isize, row: usize) -> (f64, f64) {
-        let across = column.unsigned_abs();
-        let (width, height) = (self.columns - across, self.rows - row);
-        let (left, right) = if column < 0 { (across, 0) } else { (0, across) };
-        let squares = self.squares.of([left, 0], [width, height]) + self.squares.of([right, row], [width, height]);
-        ((0.5 * squares - self.products.sum(column, row)).max(0.0), (width * height) as f64)
-    }
-
-    fn classes(&self, cell_m: DVec2, sectors: u32) -> Vec<LagClass> {
-        let edges_m = class_edges_m(cell_m.min_element(), self.longest_m);
-        let sector_width = PI / f64::from(sectors);
-        let mut sums = vec![LagClass::default(); sectors as usize * edges_m.len()];
-        let longest_column = self.longest[0] as isize;
-        for row in 0..=self.longest[1] {
-            for column in if row == 0 { 1 } else { -longest_column }..=longest_column {
-                let lag_m = cell_m * DVec2::new(column as f64, row as f64);
-                let distance_m = lag_m.length();
-                if distance_m > self.longest_m {
-                    continue;
-                }
-                let class = edges_m.partition_point(|&edge_m| edge_m <= distance_m);
-                // Sectors lie about their middle: the first about +x.
-                let sector = (lag_m.to_angle() / sector_width).round() as usize % sectors as usize;
-                let (half_squares, pairs) = self.at(column, row);
-                let sum = &mut sums[sector * edges_m.len() + class];
-                sum.semivariance_m2 += half_squares;
-                sum.distance_m += pairs * distance_m;
-                sum.pairs += pairs;
-                sum.azimuth = sector as f64 * sector_width;
+/// The classes of all pairs of a map.
+fn classes(pairs: &LagPairs, cell_m: DVec2, longest_m: f64, sectors: u32) -> Vec<LagClass> {
+    let edges_m = class_edges_m(cell_m.min_element(), longest_m);
+    let sector_width = PI / f64::from(sectors);
+    let mut sums = vec![LagClass::default(); sectors as usize * edges_m.len()];
+    let [longest_column, longest_row] = pairs.longest();
+    let longest_column = longest_column as isize;
+    for row in 0..=longest_row {
+        for column in if row == 0 { 1 } else { -longest_column }..=longest_column {
+            let lag_m = cell_m * DVec2::new(column as f64, row as f64);
+            let distance_m = lag_m.length();
+            if distance_m > longest_m {
+                continue;
             }
+            let class = edges_m.partition_point(|&edge_m| edge_m <= distance_m);
+            // Sectors lie about their middle: the first about +x.
+            let sector = (lag_m.to_angle() / sector_width).round() as usize % sectors as usize;
+            let (half_squares, count) = pairs.at(column, row);
+            let sum = &mut sums[sector * edges_m.len() + class];
+            sum.semivariance_m2 += half_squares;
+            sum.distance_m += count * distance_m;
+            sum.pairs += count;
+            sum.azimuth = sector as f64 * sector_width;
         }
-        let mean = |sum: LagClass| LagClass {
-            distance_m: sum.distance_m / sum.pairs,
-            semivariance_m2: sum.semivariance_m2 / sum.pairs,
-            ..sum
-        };
-        sums.into_iter().filter(|sum| sum.pairs > 0.0).map(mean).collect()
     }
+    let mean = |sum: LagClass| LagClass {
+        distance_m: sum.distance_m / sum.pairs,
+        semivariance_m2: sum.semivariance_m2 / sum.pairs,
+        ..sum
+    };
+    sums.into_iter().filter(|sum| sum.pairs > 0.0).map(mean).collect()
 }
 
 /// Upper ends of the classes of distance, the last beyond the longest lag.
 fn class_edges_m(cell_m: f64, longest_m: f64) -> Vec<f64> {
     let next = |&edge_m: &f64| (edge_m <= longest_m).then(|| edge_m + (CLASS_WIDTH * edge_m).max(cell_m));
     std::iter::successors(Some(0.5 * cell_m), next).collect()
-}
-
-/// Sums of squares over any rectangle of a grid.
-struct RunningSums {
-    width: usize,
-    sums: Vec<f64>,
-}
-
-impl RunningSums {
-    fn new(values: &[f64], columns: usize) -> Self {
-        let width = columns + 1;
-        let mut sums = vec![0.0; width * (values.len() / columns + 1)];
-        for (row, values) in values.chunks_exact(columns).enumerate() {
-            let mut of_row = 0.0;
-            for (column, value) in values.iter().enumerate() {
-                of_row += value * value;
-                sums[(row + 1) * width + column + 1] = sums[row * width + column + 1] + of_row;
-            }
-        }
-        Self { width, sums }
-    }
-
-    /// The sum over `size` columns and rows from the sample `first`.
-    fn of(&self, first: [usize; 2], size: [usize; 2]) -> f64 {
-        let at = |column: usize, row: usize| self.sums[row * self.width + column];
-        let ([left, top], [right, bottom]) = (first, [first[0] + size[0], first[1] + size[1]]);
-        at(right, bottom) - at(left, bottom) - at(right, top) + at(left, top)
-    }
 }
 
 #[cfg(test)]

@@ -1,26 +1,32 @@
 //! Characterises real data: the covariance of a map of elevations, or the law of counts of a pattern of plants.
 //!
-//! `cargo run --example characterise -- terrain FILE.png --cell-size 30` estimates the variogram of a map of elevations,
-//! ranks the covariance models by how well they fit it, and draws the map beside ground made from the best.
+//! `cargo run --example characterise -- terrain FILE.tif` estimates the variogram of a map of elevations, ranks the covariance models by how
+//! well they fit it, and draws the map beside ground made from the best. A PNG needs `--cell-size 30`.
 //!
 //! `cargo run --example characterise -- points FILE.csv --window 0,0,100,100` counts points in quadrats, ranks the laws
-//! of such counts, and draws the pattern beside one made from the best. The method does not know where the quadrats lie:
-//! clumps wider than a quadrat come out too small, unless `--quadrats` asks for larger quadrats.
+//! of such counts, and draws the pattern beside one made from the best. It says in words whether a law fits, and what is odd about the
+//! places. The method does not know where the quadrats lie: clumps wider than a quadrat come out too small, unless `--quadrats` asks for
+//! larger quadrats.
 
 #[path = "../../examples/support/arguments.rs"]
 mod arguments;
 #[path = "../support/chart.rs"]
 mod chart;
-mod csv_points;
+mod counts;
 mod files;
 mod histogram;
 mod map_picture;
+mod note;
 mod options;
 mod pattern_picture;
 mod points;
+mod polygon;
+mod table;
 mod terrain;
 mod variogram_chart;
 mod verdict;
+mod window;
+mod words;
 
 use clap::{Parser, error::ErrorKind};
 use options::{Options, Subject};

@@ -2,7 +2,7 @@
 
 use crate::{
     chart::{GRID, TEXT},
-    options::Window,
+    window::{Shape, Window},
 };
 use bevy::math::DVec2;
 use image::{Rgb, RgbImage};
@@ -33,7 +33,10 @@ pub fn draw(points: &[DVec2], window: &Window) -> RgbImage {
         draw_dot(&mut light, size.x as usize, centre, radius, opacity);
     }
     let mut picture = RgbImage::from_fn(size.x, size.y, |x, y| grey(light[(y * size.x + x) as usize]));
-    draw_frame(&mut picture);
+    match window.shape {
+        Shape::Rectangle => draw_frame(&mut picture),
+        Shape::Circle { .. } | Shape::Polygon(_) => draw_outline(&mut picture, window, scale),
+    }
     picture
 }
 
@@ -62,7 +65,7 @@ fn grey(light: f32) -> Rgb<u8> {
 /// Draws a line along the edges, because the background around the picture is nearly as white.
 fn draw_frame(picture: &mut RgbImage) {
     let (width, height) = picture.dimensions();
-    let line = Rgb([GRID.0, GRID.1, GRID.2].map(|channel| channel - 40));
+    let line = frame_colour();
     for x in 0..width {
         picture.put_pixel(x, 0, line);
         picture.put_pixel(x, height - 1, line);
@@ -71,4 +74,27 @@ fn draw_frame(picture: &mut RgbImage) {
         picture.put_pixel(0, y, line);
         picture.put_pixel(width - 1, y, line);
     }
+}
+
+/// Draws the outline of a window that is no rectangle, pixel by pixel along its edges.
+fn draw_outline(picture: &mut RgbImage, window: &Window, scale: f64) {
+    let (width, height) = picture.dimensions();
+    let corners = window.outline();
+    let in_pixels = |corner: DVec2| {
+        let from_corner = (corner - window.min_m) * scale;
+        DVec2::new(from_corner.x, f64::from(height) - from_corner.y)
+    };
+    for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+        let (from, to) = (in_pixels(*from), in_pixels(*to));
+        let steps = (to - from).abs().max_element().ceil().max(1.0) as u32;
+        for step in 0..=steps {
+            let at = from.lerp(to, f64::from(step) / f64::from(steps));
+            let (x, y) = ((at.x.max(0.0) as u32).min(width - 1), (at.y.max(0.0) as u32).min(height - 1));
+            picture.put_pixel(x, y, frame_colour());
+        }
+    }
+}
+
+fn frame_colour() -> Rgb<u8> {
+    Rgb([GRID.0, GRID.1, GRID.2].map(|channel| channel - 40))
 }

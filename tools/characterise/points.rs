@@ -2,32 +2,42 @@
 
 use crate::{
     chart::{Panel, pictures_and_chart},
-    csv_points::{MOST_BYTES, read_points},
+    counts::Counts,
     files, histogram,
-    options::{PointsOptions, Window},
+    note::Note,
+    options::{PointsOptions, WindowOption},
     pattern_picture,
+    table::{MOST_BYTES, Table, read_table},
     verdict::{CONFIDENCE, Verdict},
+    window::{Shape, Window},
+    words::{FITS, about_laws, about_places},
 };
 use bevy::math::DVec2;
 use bevy_windwood::{
     SettingError,
-    scatter::{
-        counts::{CountKind, CountLaw, CountModel, Dispersion, Fit, Frequencies, by_moments, characterise, dispersion},
-        quadrat::{QuadratGrid, exact_counts, place_points},
-    },
+    scatter::counts::{CountKind, CountLaw, CountModel, Dispersion, Fit, by_moments, characterise, dispersion},
 };
-use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
 use serde_json::{Value, json};
+use std::path::Path;
 
 /// Least number of points: fewer do not fill the three classes of five quadrats that the tests need.
 const LEAST_POINTS: usize = 20;
+/// How many times as wide other quadrats are that are tried where no law fits.
+const OTHER_QUADRATS: [f64; 5] = [2.0, 3.0, 4.0, 0.5, 1.5];
+/// Points in one of them, on average, above which they are not tried: the search takes the square of it.
+const MOST_ON_AVERAGE: f64 = 30.0;
+/// Degrees of freedom that its test must have: with fewer everything fits.
+const LEAST_DEGREES: f64 = 3.0;
 
 /// A pattern and its analysis.
 struct Analysis {
     window: Window,
     points: Vec<DVec2>,
-    grid: QuadratGrid,
-    table: Frequencies,
+    /// What is odd about the table and the places.
+    notes: Vec<Note>,
+    /// Whether a law fits.
+    about_laws: Note,
+    counts: Counts,
     dispersion: Dispersion,
     /// The best first.
     fits: Vec<Fit>,
@@ -46,15 +56,21 @@ struct Row {
 /// In one line, naming the file and what is wrong with it.
 pub fn run(options: &PointsOptions) -> Result<(), String> {
     let named = |error: String| format!("{}: {error}", options.file.display());
+    let window = match &options.window {
+        WindowOption::Given(window) => window.clone(),
+        WindowOption::PolygonFile(file) => polygon(file)?,
+    };
     let bytes = files::read(&options.file, MOST_BYTES)?;
-    let points = read_points(&bytes, &options.window).map_err(named)?;
-    if points.len() < LEAST_POINTS {
-        return Err(named(format!("there are {} points, but must be at least {LEAST_POINTS}", points.len())));
+    let columns = options.columns.as_ref().map(|columns| &columns.0);
+    let table = read_table(&bytes, columns, |place| require_inside(place, &window)).map_err(named)?;
+    if table.points.len() < LEAST_POINTS {
+        return Err(named(format!("there are {} points, but must be at least {LEAST_POINTS}", table.points.len())));
     }
-    let analysis = Analysis::of(points, options).map_err(|error| named(error.to_string()))?;
+    let analysis = Analysis::of(table, window, options.quadrats).map_err(|error| named(error.to_string()))?;
     analysis.print();
     files::write_json(options.json.as_deref(), &analysis.to_json(options.seed))?;
-    let simulated = analysis.simulated(options.seed).map_err(|error| named(error.to_string()))?;
+    let simulated = analysis.counts.simulate(analysis.best().model(), options.seed);
+    let simulated = simulated.map_err(|error| named(error.to_string()))?;
     let panels = [
         Panel {
             caption: format!("real: {} points, {}", analysis.points.len(), Verdict::of(&analysis.dispersion).name()),
@@ -68,22 +84,63 @@ pub fn run(options: &PointsOptions) -> Result<(), String> {
     let name = options.file.file_name().unwrap_or_default().to_string_lossy();
     let title = format!("{name:.60}: real and simulated");
     let figure = pictures_and_chart(&title, &panels, "Points in a quadrat", |area| {
-        histogram::draw(area, &analysis.table, analysis.best())
+        histogram::draw(area, &analysis.counts.table, analysis.best())
     })?;
     files::write_picture(&options.out, &figure)
 }
 
+/// The window whose corners are in a file.
+fn polygon(file: &Path) -> Result<Window, String> {
+    let named = |error: String| format!("{}: {error}", file.display());
+    let corners = read_table(&files::read(file, MOST_BYTES)?, None, |_| Ok(())).map_err(named)?;
+    corners.notes.iter().for_each(Note::print);
+    Window::polygon(corners.points).map_err(named)
+}
+
+fn require_inside(place: DVec2, window: &Window) -> Result<(), String> {
+    if window.contains(place) {
+        return Ok(());
+    }
+    let allowed = match window.shape {
+        Shape::Rectangle => format!("from {} to {}", window.min_m, window.max_m),
+        _ => format!("in {}, which lies from {} to {}", window.describe(), window.min_m, window.max_m),
+    };
+    Err(format!("the point {place} is outside the window, but must be {allowed}"))
+}
+
+/// Quadrats, columns and rows, with which a law fits.
+fn other_quadrats(points: &[DVec2], window: &Window, counts: &Counts) -> Option<[u32; 2]> {
+    let fits = |quadrats: &[u32; 2]| {
+        let counts = Counts::of(points, window, Some((quadrats[0], quadrats[1]))).ok()?;
+        let laws = characterise(&counts.table).ok()?;
+        laws.iter()
+            .filter_map(|fit| fit.goodness)
+            .find(|test| test.p >= FITS && test.degrees_of_freedom >= LEAST_DEGREES)
+    };
+    let times_wider = |factor: f64| {
+        let across = |quadrats: u32| ((f64::from(quadrats) / factor).round() as u32).clamp(1, 4096);
+        (counts.table.mean() * factor * factor <= MOST_ON_AVERAGE)
+            .then(|| [across(counts.grid.columns()), across(counts.grid.rows())])
+    };
+    OTHER_QUADRATS.into_iter().filter_map(times_wider).find(|quadrats| fits(quadrats).is_some())
+}
+
 impl Analysis {
-    fn of(points: Vec<DVec2>, options: &PointsOptions) -> Result<Self, SettingError> {
-        let window = options.window;
-        let grid = match options.quadrats {
-            Some((columns, rows)) => QuadratGrid::new(window.min_m, window.max_m, columns, rows),
-            None => QuadratGrid::with_quadrat_for_each(points.len(), window.min_m, window.max_m),
-        }?;
-        let table = grid.frequencies(&points)?;
-        let fits = characterise(&table)?;
-        let dispersion = dispersion(&table);
-        Ok(Self { window, points, grid, table, dispersion, fits })
+    fn of(table: Table, window: Window, quadrats: Option<(u32, u32)>) -> Result<Self, SettingError> {
+        let Table { points, mut notes } = table;
+        let counts = Counts::of(&points, &window, quadrats)?;
+        let fits = characterise(&counts.table)?;
+        notes.extend(about_places(&points, &window, counts.grid.quadrat_m()));
+        let left_out = points.len() - counts.points;
+        if left_out > 0 {
+            notes.push(Note::new(format!(
+                "{left_out} points lie in quadrats that reach over the edge of the window, which do not count"
+            )));
+        }
+        let is_fitted = fits.iter().any(|fit| fit.goodness.is_some_and(|goodness| goodness.p >= FITS));
+        let others = if is_fitted { None } else { other_quadrats(&points, &window, &counts) };
+        let about_laws = about_laws(&fits, others);
+        Ok(Self { window, points, notes, about_laws, dispersion: dispersion(&counts.table), counts, fits })
     }
 
     fn best(&self) -> &CountLaw {
@@ -93,7 +150,7 @@ impl Analysis {
 
     /// All laws: first those that were ranked, then the others.
     fn rows(&self) -> Vec<Row> {
-        let row = |kind, likelihood| Row { kind, likelihood, moments: by_moments(kind, &self.table) };
+        let row = |kind, likelihood| Row { kind, likelihood, moments: by_moments(kind, &self.counts.table) };
         let ranked: Vec<CountKind> = self.fits.iter().map(|fit| fit.law.model().kind()).collect();
         let left_out = CountKind::ALL.into_iter().filter(|kind| !ranked.contains(kind));
         let fitted = self.fits.iter().map(|fit| row(fit.law.model().kind(), Some(*fit)));
@@ -101,16 +158,22 @@ impl Analysis {
     }
 
     fn print(&self) {
-        let (size_m, quadrat_m) = (self.window.size_m(), self.grid.quadrat_m());
-        println!("{} points in {} x {} m", self.points.len(), size_m.x, size_m.y);
+        self.notes.iter().for_each(Note::print);
+        let Counts { grid, table, .. } = &self.counts;
+        let quadrat_m = grid.quadrat_m();
+        println!("{} points in {}", self.points.len(), self.window.describe());
+        let inside = match self.counts.quadrats() {
+            all if all == grid.quadrats() => String::new(),
+            inside => format!("{inside} of "),
+        };
         println!(
-            "{} x {} quadrats of {:.4} x {:.4} m hold {:.4} points on average, variance {:.4}",
-            self.grid.columns(),
-            self.grid.rows(),
+            "{inside}{} x {} quadrats of {:.4} x {:.4} m hold {:.4} points on average, variance {:.4}",
+            grid.columns(),
+            grid.rows(),
             quadrat_m.x,
             quadrat_m.y,
-            self.table.mean(),
-            self.table.variance()
+            table.mean(),
+            table.variance()
         );
         let Dispersion { index, chi_square, degrees_of_freedom, .. } = self.dispersion;
         let [low, high] = self.dispersion.range_if_random(CONFIDENCE);
@@ -131,6 +194,7 @@ impl Analysis {
                 parameters(moments)
             );
         }
+        self.about_laws.print();
     }
 
     fn to_json(&self, seed: u64) -> Value {
@@ -149,12 +213,18 @@ impl Analysis {
         };
         json!({
             "points": self.points.len(),
+            "notes": self.notes.iter().chain([&self.about_laws]).map(Note::to_json).collect::<Vec<_>>(),
+            "a_law_fits": !self.about_laws.is_warning,
+            "window": self.window.describe(),
             "window_m": [self.window.min_m.to_array(), self.window.max_m.to_array()],
-            "quadrats": [self.grid.columns(), self.grid.rows()],
-            "quadrat_m": self.grid.quadrat_m().to_array(),
-            "quadrats_with": self.table.quadrats_with(),
-            "mean": self.table.mean(),
-            "variance": self.table.variance(),
+            "window_area_m2": self.window.area_m2(),
+            "quadrats": [self.counts.grid.columns(), self.counts.grid.rows()],
+            "quadrats_inside": self.counts.quadrats(),
+            "points_inside": self.counts.points,
+            "quadrat_m": self.counts.grid.quadrat_m().to_array(),
+            "quadrats_with": self.counts.table.quadrats_with(),
+            "mean": self.counts.table.mean(),
+            "variance": self.counts.table.variance(),
             "dispersion": {
                 "index": self.dispersion.index,
                 "index_if_random": self.dispersion.range_if_random(CONFIDENCE),
@@ -167,13 +237,6 @@ impl Analysis {
             "laws": self.rows().into_iter().map(law).collect::<Vec<_>>(),
             "seed": seed,
         })
-    }
-
-    /// As many points in the same quadrats, by the best law.
-    fn simulated(&self, seed: u64) -> Result<Vec<DVec2>, SettingError> {
-        let random = &mut Xoshiro256PlusPlus::seed_from_u64(seed);
-        let counts = exact_counts(self.best().model(), self.points.len(), self.grid.quadrats(), random)?;
-        place_points(&self.grid, &counts, 0.0, random)
     }
 }
 

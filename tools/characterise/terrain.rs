@@ -4,18 +4,19 @@ use crate::{
     chart::{Panel, pictures_and_chart},
     files,
     map_picture::{Shading, reduced},
+    note::Note,
     options::TerrainOptions,
     variogram_chart,
 };
 use bevy::math::DVec2;
 use bevy_windwood::terrain::{
-    CovarianceModel, ElevationGrid, ElevationScale, Fit, TerrainError, TurningBands, TurningBandsSettings, Variogram,
-    VariogramSettings, fit_models,
+    CovarianceModel, Elevation, ElevationGrid, ElevationNotice, ElevationSettings, Fit, TerrainError, TurningBands,
+    TurningBandsSettings, Variogram, VariogramSettings, fit_models,
 };
 use serde_json::{Value, json};
 
-/// Greatest size of a file: twice that of 4096 x 4096 samples of 16 bits without compression.
-const MOST_FILE_BYTES: u64 = 64 << 20;
+/// Greatest size of a file: twice that of 4096 x 4096 samples of 64 bits, or of as many in text.
+const MOST_FILE_BYTES: u64 = 256 << 20;
 /// Lines of the random ground. Fewer leave streaks that hill shading shows.
 const LINES: u32 = 64;
 /// Cells per wave of the shortest wave.
@@ -26,6 +27,7 @@ const NO_RANGE: f64 = 0.99;
 /// A map and its analysis.
 struct Analysis {
     map: ElevationGrid,
+    notes: Vec<Note>,
     variogram: Variogram,
     /// The best first.
     fits: Vec<Fit>,
@@ -37,8 +39,9 @@ struct Analysis {
 /// In one line, naming the file and what is wrong with it.
 pub fn run(options: &TerrainOptions) -> Result<(), String> {
     let bytes = files::read(&options.file, MOST_FILE_BYTES)?;
-    let named = |error: TerrainError| format!("{}: {error}", options.file.display());
-    let analysis = Analysis::of(&bytes, &options.scale()).map_err(named)?;
+    let named = |error: TerrainError| format!("{}: {}", options.file.display(), in_options(&error.to_string()));
+    let name = options.file.file_name().unwrap_or_default().to_string_lossy();
+    let analysis = Analysis::of(&name, &bytes, &options.settings()).map_err(named)?;
     analysis.print();
     let shown = reduced(&analysis.map).map_err(named)?;
     let settings = analysis.settings(shown.cell_m().min_element(), options.seed);
@@ -49,7 +52,6 @@ pub fn run(options: &TerrainOptions) -> Result<(), String> {
         Panel { caption: analysis.describe_map(), picture: shading.draw(&shown) },
         Panel { caption: analysis.describe_best(options.seed), picture: shading.draw(&simulated) },
     ];
-    let name = options.file.file_name().unwrap_or_default().to_string_lossy();
     let title = format!("{name:.60}: real and simulated");
     let figure = pictures_and_chart(&title, &panels, "Variogram", |area| {
         variogram_chart::draw(area, &analysis.variogram, &analysis.fits)
@@ -58,22 +60,45 @@ pub fn run(options: &TerrainOptions) -> Result<(), String> {
 }
 
 impl TerrainOptions {
-    fn scale(&self) -> ElevationScale {
-        ElevationScale {
+    fn settings(&self) -> ElevationSettings {
+        ElevationSettings {
             cell_x_m: self.cell_size,
-            cell_z_m: self.cell_size_z.unwrap_or(self.cell_size),
+            cell_z_m: self.cell_size_z,
             metres_per_unit: self.metres_per_unit,
             base_m: self.base,
+            height_range_m: self.height_range.map(|range| range.0),
+            no_data: self.no_data,
+            raw: self.raw_layout(),
         }
     }
 }
 
+/// What the library says of its settings, said of the options that set them.
+fn in_options(text: &str) -> String {
+    let options = [
+        ("`cell_x_m`", "`--cell-size`"),
+        ("`cell_z_m`", "`--cell-size-z`"),
+        ("`metres_per_unit`", "`--metres-per-unit`"),
+        ("`base_m`", "`--base`"),
+        ("`height_range_m`", "`--height-range LOW,HIGH`"),
+        ("set `no_data` to", "use --no-data"),
+        ("`no_data`", "`--no-data`"),
+        ("`raw` layout", "`--raw COLUMNSxROWS`"),
+    ];
+    options.into_iter().fold(text.to_owned(), |text, (setting, option)| text.replace(setting, option))
+}
+
+fn note(notice: &ElevationNotice) -> Note {
+    Note { is_warning: notice.is_warning(), text: in_options(&notice.to_string()) }
+}
+
 impl Analysis {
-    fn of(png: &[u8], scale: &ElevationScale) -> Result<Self, TerrainError> {
-        let map = ElevationGrid::from_png(png, scale)?;
+    fn of(name: &str, bytes: &[u8], settings: &ElevationSettings) -> Result<Self, TerrainError> {
+        let Elevation { grid: map, notices } = Elevation::read(name, bytes, settings)?;
+        let notes = notices.iter().map(note).collect();
         let variogram = Variogram::estimate(&map, &VariogramSettings::default())?;
         let fits = fit_models(&variogram, &CovarianceModel::ALL)?;
-        Ok(Self { map, variogram, fits })
+        Ok(Self { map, notes, variogram, fits })
     }
 
     fn best(&self) -> &Fit {
@@ -95,6 +120,7 @@ impl Analysis {
     }
 
     fn print(&self) {
+        self.notes.iter().for_each(Note::print);
         let mean_m = self.variogram.drift().mean_m;
         println!("{}, mean {mean_m:.1} m, deviation {:.1} m", self.describe_map(), self.deviation_m());
         println!("{:<20} {:>11} {:>11} {:>13} {:>7}", "model", "scale m", "range m", "deviation m", "error");
@@ -130,7 +156,6 @@ impl Analysis {
     }
 
     fn to_json(&self, settings: &TurningBandsSettings) -> Value {
-        let heights_m = self.map.heights_m();
         let fit = |fit: &Fit| {
             let dimension = match fit.model {
                 CovarianceModel::Fractal { dimension } => Some(dimension),
@@ -159,11 +184,13 @@ impl Analysis {
                 "columns": self.map.columns(),
                 "rows": self.map.rows(),
                 "cell_m": self.map.cell_m().to_array(),
-                "least_m": heights_m.iter().copied().fold(f32::INFINITY, f32::min),
-                "greatest_m": heights_m.iter().copied().fold(f32::NEG_INFINITY, f32::max),
+                "least_m": self.map.measured_m().fold(f32::INFINITY, f32::min),
+                "greatest_m": self.map.measured_m().fold(f32::NEG_INFINITY, f32::max),
+                "cells_without_data": self.map.gaps(),
                 "mean_m": self.variogram.drift().mean_m,
                 "deviation_m": self.deviation_m(),
             },
+            "notes": self.notes.iter().map(Note::to_json).collect::<Vec<_>>(),
             "fits": self.fits.iter().map(fit).collect::<Vec<_>>(),
             "variogram": self.variogram.classes().iter().map(class).collect::<Vec<_>>(),
             "simulated": settings,

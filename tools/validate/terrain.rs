@@ -8,8 +8,8 @@ use bevy::math::DVec2;
 use bevy_windwood::{
     Ground,
     terrain::{
-        Anisotropy, CovarianceModel, ElevationGrid, ElevationScale, TurningBands, TurningBandsSettings, Variogram,
-        VariogramSettings, fit_model, fit_models,
+        Anisotropy, CovarianceModel, Elevation, ElevationGrid, ElevationSettings, TurningBands, TurningBandsSettings,
+        Variogram, VariogramSettings, fit_model, fit_models,
     },
 };
 use std::{thread, time::Instant};
@@ -240,9 +240,9 @@ fn lookup_errors() -> LookupErrors {
 /// Records which model fits the shipped map best.
 fn record_real_ground(report: &mut Report) {
     let bytes = include_bytes!("../../assets/terrain/rmnp-dem-16bit.png");
-    let scale = ElevationScale { cell_x_m: 233.0, cell_z_m: 234.0, ..Default::default() };
-    let map = ElevationGrid::from_png(bytes, &scale).expect("the shipped map is valid");
-    let variogram = Variogram::estimate(&map, &VariogramSettings::default()).expect("mountains are not level");
+    let map =
+        Elevation::read("", bytes, &ElevationSettings::with_cells(233.0, 234.0)).expect("the shipped map is valid");
+    let variogram = Variogram::estimate(&map.grid, &VariogramSettings::default()).expect("mountains are not level");
     let fits = fit_models(&variogram, &CovarianceModel::ALL).expect("there are classes enough");
     report.record("real_ground_best_residual", fits[0].residual, fits[0].model.name());
     report.record("real_ground_worst_residual", fits[7].residual, fits[7].model.name());

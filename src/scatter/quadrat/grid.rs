@@ -70,7 +70,7 @@ impl QuadratGrid {
     }
 
     /// The least corner of a quadrat, m.
-    pub(super) fn corner_m(&self, quadrat: usize) -> DVec2 {
+    pub fn corner_m(&self, quadrat: usize) -> DVec2 {
         let columns = self.columns as usize;
         self.min_m + self.quadrat_m * DVec2::new((quadrat % columns) as f64, (quadrat / columns) as f64)
     }
@@ -79,7 +79,7 @@ impl QuadratGrid {
     ///
     /// # Errors
     /// [`SettingError`] for the first point that is outside the ground or no number.
-    pub(super) fn count(&self, points: &[DVec2]) -> Result<Vec<u32>, SettingError> {
+    pub fn counts(&self, points: &[DVec2]) -> Result<Vec<u32>, SettingError> {
         let mut counts = vec![0_u32; self.quadrats()];
         let cells = DVec2::new(f64::from(self.columns), f64::from(self.rows));
         let max_m = self.min_m + self.quadrat_m * cells;
@@ -104,7 +104,7 @@ impl QuadratGrid {
     /// # Errors
     /// [`SettingError`] for the first point that is outside the ground or no number, and for counts that [`Frequencies::new`] refuses.
     pub fn frequencies(&self, points: &[DVec2]) -> Result<Frequencies, SettingError> {
-        Frequencies::of_counts(&self.count(points)?)
+        Frequencies::of_counts(&self.counts(points)?)
     }
 }
 
@@ -116,7 +116,7 @@ mod tests {
     fn points_are_counted_in_their_quadrat_also_on_edges() {
         let grid = QuadratGrid::new(DVec2::new(-10.0, 0.0), DVec2::new(10.0, 30.0), 2, 3).unwrap();
         let points = [(-10.0, 0.0), (-0.1, 9.9), (0.0, 10.0), (10.0, 30.0), (5.0, 25.0)].map(DVec2::from);
-        assert_eq!(grid.count(&points).unwrap(), [2, 0, 0, 1, 0, 2]);
+        assert_eq!(grid.counts(&points).unwrap(), [2, 0, 0, 1, 0, 2]);
         assert_eq!(grid.frequencies(&points).unwrap().quadrats_with(), [3, 1, 2]);
         assert_eq!(grid.corner_m(3), DVec2::new(0.0, 10.0));
     }
@@ -125,7 +125,7 @@ mod tests {
     fn points_outside_the_window_are_named() {
         let grid = QuadratGrid::new(DVec2::ZERO, DVec2::ONE, 4, 4).unwrap();
         for bad in [DVec2::new(1.5, 0.5), DVec2::new(f64::NAN, 0.5), DVec2::new(0.5, f64::NEG_INFINITY)] {
-            let message = grid.count(&[DVec2::splat(0.5), bad]).unwrap_err().to_string();
+            let message = grid.counts(&[DVec2::splat(0.5), bad]).unwrap_err().to_string();
             assert!(message.starts_with("`points[1]` is ["), "{message}");
             assert!(message.ends_with("but must be from [0, 0] to [1, 1]"), "{message}");
         }

@@ -75,9 +75,9 @@ mod tests {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
         let counts: Vec<u32> = (0..100).map(|quadrat| quadrat % 7).collect();
         let points = place_points(&grid(), &counts, 0.0, &mut random).unwrap();
-        assert_eq!(grid().count(&points).unwrap(), counts);
+        assert_eq!(grid().counts(&points).unwrap(), counts);
         let spaced = place_points(&grid(), &counts, 1.0, &mut random).unwrap();
-        assert_eq!(grid().count(&spaced).unwrap(), counts, "six stems a metre apart have room in 81 square metres");
+        assert_eq!(grid().counts(&spaced).unwrap(), counts, "six stems a metre apart have room in 81 square metres");
     }
 
     #[test]

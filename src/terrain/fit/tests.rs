@@ -1,7 +1,7 @@
 use super::*;
 use crate::{
     ground::Ground,
-    terrain::{ElevationGrid, ElevationScale, TurningBands, VariogramSettings},
+    terrain::{Elevation, ElevationGrid, ElevationSettings, TurningBands, VariogramSettings},
 };
 use approx::assert_relative_eq;
 
@@ -87,8 +87,7 @@ fn fits_do_not_depend_on_units() {
 #[test]
 fn real_ground_is_fitted_and_reproduced() {
     let bytes = include_bytes!("../../../assets/terrain/rmnp-dem-16bit.png");
-    let scale = ElevationScale { cell_x_m: 233.0, cell_z_m: 234.0, ..Default::default() };
-    let real = ElevationGrid::from_png(bytes, &scale).unwrap();
+    let real = Elevation::read("", bytes, &ElevationSettings::with_cells(233.0, 234.0)).unwrap().grid;
     let variogram = Variogram::estimate(&real, &VariogramSettings::default()).unwrap();
     let fits = fit_models(&variogram, &CovarianceModel::ALL).unwrap();
     let best = fits[0];
