@@ -1,5 +1,6 @@
 //! Forests as entities.
 
+use super::changes::ForestChanges;
 use crate::{
     ground::Ground,
     scatter::ForestPlan,
@@ -12,7 +13,7 @@ use std::sync::Arc;
 /// A forest that grows from a plan, in the world's own frame. Its trees and impostors have its `RenderLayers`.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component)]
-#[require(ForestSettings, Transform, Visibility)]
+#[require(ForestSettings, ForestChanges, Transform, Visibility)]
 pub struct Forest {
     /// Where what grows; hot reloads.
     pub plan: Handle<ForestPlan>,

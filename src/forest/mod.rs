@@ -16,34 +16,50 @@
 //!   tells how the forest does.
 //! - [`PlanCover`] tells the ground where the woods are, so that they are seen beyond the last tree.
 
+mod apply_changes;
 mod begin;
 mod cell_canopies;
+mod cell_planter;
 mod cells;
+mod change_index;
+mod changed_cells;
+mod changes;
 mod components;
 mod cover;
 #[cfg(feature = "render")]
 mod cull;
 #[cfg(feature = "render")]
 mod diagnose;
+mod editor;
 mod extent;
 mod give_canopies;
 #[cfg(feature = "render")]
 mod impostors;
+mod journal;
 #[cfg(feature = "render")]
 mod layers;
+mod messages;
 mod missing_species;
 mod near;
 mod near_cell;
+mod near_changes;
 mod near_services;
 mod planted_tile;
 mod plugin;
 mod reach;
 mod stand;
 mod stand_species;
+mod stem_id;
+mod stems;
 mod stream_trees;
 
 pub use cells::ForestCells;
+pub use changes::{ForestChanges, NewStem};
 pub use components::{Forest, ForestCell, ForestGround, ForestSettings};
+pub use editor::ForestEditor;
+pub use messages::{TreeEntered, TreeFelled, TreeLeft};
+pub use stem_id::StemId;
+pub use stems::StandingStem;
 pub use cover::{PlanCover, StandingGround};
 pub use plugin::ForestPlugin;
 #[cfg(feature = "render")]

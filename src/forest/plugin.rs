@@ -1,12 +1,16 @@
 //! Registers forests.
 
 use super::{
+    apply_changes::apply_changes,
     begin::begin_forests,
     cells::{ForestCells, plant_cells},
+    changes::ForestChanges,
     components::{Forest, ForestCell, ForestSettings},
     give_canopies::give_canopies,
+    messages::{TreeEntered, TreeFelled, TreeLeft},
     missing_species::{MissingPlanSpecies, report_missing_plan_species},
     near_services::{articulate_near_trees, spawn_wind_cells},
+    stem_id::StemId,
     stand_species::{StandSpeciesLibrary, prepare_stands},
     stream_trees::stream_trees,
 };
@@ -36,14 +40,20 @@ impl Plugin for ForestPlugin {
             .register_asset_reflect::<ForestPlan>()
             .init_resource::<StandSpeciesLibrary>()
             .add_message::<MissingPlanSpecies>()
+            .add_message::<TreeEntered>()
+            .add_message::<TreeLeft>()
+            .add_message::<TreeFelled>()
             .register_type::<Forest>()
             .register_type::<ForestSettings>()
+            .register_type::<ForestChanges>()
+            .register_type::<StemId>()
             .add_observer(remove_made::<Forest, ForestCell, ForestCells>);
         let stream = timed!(
             app,
             begin_forests,
             report_missing_plan_species,
             prepare_stands,
+            apply_changes,
             plant_cells,
             stream_trees,
             give_canopies,
