@@ -99,7 +99,7 @@ pub mod prelude {
     pub use crate::{
         Ground, Viewpoint, WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
         fire::{Fire, FireLook, FireShape},
-        forest::{Forest, ForestGround, ForestSettings},
+        forest::{Forest, ForestChanges, ForestEditor, ForestGround, ForestSettings, NewStem, StemId},
         grass::{GrassGround, GrassLook, GrassPatch, GrassResponse, Sward, Tuft},
         sway::{ActiveSway, InCanopy, SwaySettings},
         terrain::{GroundLook, Terrain, TerrainSettings},

@@ -1,11 +1,7 @@
 //! Takes the changes of forests over.
 
 use super::{
-    cells::ForestCells,
-    changed_cells::FelledStem,
-    changes::ForestChanges,
-    journal::Journal,
-    messages::TreeFelled,
+    cells::ForestCells, changed_cells::FelledStem, changes::ForestChanges, journal::Journal, messages::TreeFelled,
 };
 use bevy::prelude::*;
 

@@ -283,14 +283,18 @@ impl ForestCells {
     /// Takes over a tile that was planted. One that has the plants that it had stays as it is.
     pub(super) fn take_tile(&mut self, place: IVec2, (planted, packed): PackedTile) {
         self.near.offer(place, &planted);
-        let fingerprint = Some(planted.fingerprint());
+        // Cells that were changed while it was being planted will come again. Those that have been changed at once stay so until then.
+        let changed = self.changed_tiles.get(&(place.y, place.x)).map_or(&[][..], Vec::as_slice);
+        let fingerprint = changed.is_empty().then(|| planted.fingerprint());
         let before = self.tiles.insert(place, KnownTile { fingerprint, is_outdated: false });
         self.outdated -= usize::from(before.as_ref().is_some_and(|before| before.is_outdated));
-        if before.is_some_and(|before| before.fingerprint == fingerprint) {
+        if fingerprint.is_some() && before.is_some_and(|before| before.fingerprint == fingerprint) {
             return;
         }
         for (cell, content) in packed {
-            self.store.insert(cell, content);
+            if !changed.contains(&cell) || !self.store.contains(cell) {
+                self.store.insert(cell, content);
+            }
         }
         #[cfg(feature = "render")]
         if let Some(tiles) = &mut self.for_impostors {
@@ -386,9 +390,7 @@ impl ForestCells {
             self.planting.clear();
             self.replanting.clear();
             self.outdated = self.tiles.len();
-            self.tiles
-                .values_mut()
-                .for_each(|tile| *tile = KnownTile { fingerprint: None, is_outdated: true });
+            self.tiles.values_mut().for_each(|tile| *tile = KnownTile { fingerprint: None, is_outdated: true });
         }
     }
 }

@@ -163,9 +163,10 @@ impl ChangeIndex {
             (Some(StemChange::Altered(age_years, species)), _) => {
                 Change::Altered(AlteredStem::Altered { age_years, species: species.and_then(number_of) })
             }
-            (None, Some(PlantedStem(place_m, age_years, species))) => number_of(species).map_or(Change::None, |species| {
-                Change::Added(AddedStem { place_m: place_m.into(), age_years, species })
-            }),
+            (None, Some(PlantedStem(place_m, age_years, species))) => number_of(species)
+                .map_or(Change::None, |species| {
+                    Change::Added(AddedStem { place_m: place_m.into(), age_years, species })
+                }),
             (None, None) => Change::None,
         };
         if id.is_planted() {

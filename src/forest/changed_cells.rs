@@ -36,7 +36,8 @@ impl ForestCells {
             (Journal::Stems(stems), Some(index)) => {
                 let mut unknown = HashSet::default();
                 let planter = &self.planter;
-                let mut update = |stem: &ChangedStem| index.update(stem.id, stem.place_m, changes, planter, &mut unknown);
+                let mut update =
+                    |stem: &ChangedStem| index.update(stem.id, stem.place_m, changes, planter, &mut unknown);
                 let mut cells: Vec<IVec2> = stems.iter().map(&mut update).collect();
                 let was_felled = stems.into_iter().zip(&cells).filter(|(stem, _)| stem.was_felled);
                 let was_felled: Vec<(ChangedStem, IVec2)> = was_felled.map(|(stem, cell)| (stem, *cell)).collect();
@@ -79,9 +80,13 @@ impl ForestCells {
         }
         let (near, _, _, plant) = self.parts();
         near.replant_awaited(tile, cell, plant);
-        if !is_done || self.has_impostors() || self.is_being_planted(tile) {
+        // What is under way is as it was before.
+        let under_way = self.replanting.iter_mut().filter(|other| other.tile == tile);
+        under_way.for_each(|other| other.cells.retain(|other| *other != cell));
+        let is_under_way = self.is_being_planted(tile);
+        if !is_done || is_under_way || self.has_impostors() {
             let cells = self.changed_tiles.entry((tile.y, tile.x)).or_default();
-            if !is_done && !cells.contains(&cell) {
+            if (!is_done || is_under_way) && !cells.contains(&cell) {
                 cells.push(cell);
             }
         }

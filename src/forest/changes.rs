@@ -231,7 +231,11 @@ impl ForestChanges {
         self.species.get(usize::from(number)).map(String::as_str)
     }
 
-    fn alter(&mut self, id: StemId, change: impl FnOnce(&mut Option<f32>, &mut Option<u8>)) -> Result<(), SettingError> {
+    fn alter(
+        &mut self,
+        id: StemId,
+        change: impl FnOnce(&mut Option<f32>, &mut Option<u8>),
+    ) -> Result<(), SettingError> {
         self.require_standing(id)?;
         let place_m = self.place_m(id)?;
         if let Some(PlantedStem(_, age_years, species)) = self.planted.get_mut(&id) {
@@ -341,7 +345,9 @@ mod tests {
     fn saved_changes_are_checked_when_they_are_read() {
         let (changes, [.., planted]) = changed();
         let text = ron::to_string(&changes).unwrap();
-        for (right, wrong) in [("3.0)", "NaN)"), ("12.5", "-3.0"), ("[\"larch\",", "["), ("planted_so_far:1", "planted_so_far:0")] {
+        for (right, wrong) in
+            [("3.0)", "NaN)"), ("12.5", "-3.0"), ("[\"larch\",", "["), ("planted_so_far:1", "planted_so_far:0")]
+        {
             assert!(text.contains(right), "{text}");
             assert!(ron::from_str::<ForestChanges>(&text.replacen(right, wrong, 1)).is_err(), "{wrong}");
         }

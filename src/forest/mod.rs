@@ -56,12 +56,12 @@ mod stream_trees;
 pub use cells::ForestCells;
 pub use changes::{ForestChanges, NewStem};
 pub use components::{Forest, ForestCell, ForestGround, ForestSettings};
+pub use cover::{PlanCover, StandingGround};
 pub use editor::ForestEditor;
 pub use messages::{TreeEntered, TreeFelled, TreeLeft};
+pub use plugin::ForestPlugin;
 pub use stem_id::StemId;
 pub use stems::StandingStem;
-pub use cover::{PlanCover, StandingGround};
-pub use plugin::ForestPlugin;
 #[cfg(feature = "render")]
 pub use {
     cull::ForestCulling,

@@ -105,9 +105,7 @@ impl NearCell {
         cell.planted.retain(|(id, plant)| {
             let species = species[usize::from(plant.species)].id();
             let is_same = |tree: &NearTree| {
-                tree.id == *id
-                    && tree.species == species
-                    && Planted { species: plant.species, ..tree.plant } == *plant
+                tree.id == *id && tree.species == species && Planted { species: plant.species, ..tree.plant } == *plant
             };
             let Some(place) = before.iter().position(is_same) else { return true };
             cell.spawned.push(NearTree { plant: *plant, ..before.swap_remove(place) });

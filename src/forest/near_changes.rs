@@ -46,7 +46,8 @@ impl NearTrees {
     /// Takes what is known of a tile for out of date: a cell of it that is being planted alone is planted again.
     pub fn replant_awaited(&mut self, tile: IVec2, cell: IVec2, plant: impl Fn(IVec2) -> Option<CellTask>) {
         self.tiles.remove(&tile);
-        let alone = self.planting.iter_mut().find(|(other, source)| *other == cell && matches!(source, Planting::Alone(_)));
+        let alone =
+            self.planting.iter_mut().find(|(other, source)| *other == cell && matches!(source, Planting::Alone(_)));
         if let Some((_, source)) = alone {
             *source = plant(cell).map_or(Planting::Tile, Planting::Alone);
         }

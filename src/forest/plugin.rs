@@ -10,8 +10,8 @@ use super::{
     messages::{TreeEntered, TreeFelled, TreeLeft},
     missing_species::{MissingPlanSpecies, report_missing_plan_species},
     near_services::{articulate_near_trees, spawn_wind_cells},
-    stem_id::StemId,
     stand_species::{StandSpeciesLibrary, prepare_stands},
+    stem_id::StemId,
     stream_trees::stream_trees,
 };
 use crate::{

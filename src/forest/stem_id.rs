@@ -103,7 +103,10 @@ mod tests {
         assert_eq!(StemId::at(Vec2::new(-0.0, 1.0)), StemId::at(Vec2::new(0.0, 1.0)));
         let planted = StemId::planted(7);
         assert!(planted.is_planted() && planted.place_m().is_none() && !StemId::at(place).is_planted());
-        assert_eq!((StemId::at(Vec2::new(1.5, -2.0)).to_string(), planted.to_string().as_str()), ("the stem at 1.5, -2".into(), "planted stem 7"));
+        assert_eq!(
+            (StemId::at(Vec2::new(1.5, -2.0)).to_string(), planted.to_string().as_str()),
+            ("the stem at 1.5, -2".into(), "planted stem 7")
+        );
     }
 
     #[test]
