@@ -1,14 +1,19 @@
 //! Takes the changes of forests over.
 
 use super::{
-    cells::ForestCells, changed_cells::FelledStem, changes::ForestChanges, journal::Journal, messages::TreeFelled,
+    cells::ForestCells, changed_cells::FelledStem, changes::ForestChanges, falling::FallingTree, journal::Journal,
+    messages::TreeFelled, stem_id::StemId,
 };
+#[cfg(feature = "render")]
+use crate::render::instances::components::HasImpostor;
+use crate::tree::Grown;
 use bevy::prelude::*;
 
 /// Takes changes over that were made since the last frame, or that a forest which begins anew has to know.
 pub(super) fn apply_changes(
     mut commands: Commands,
     mut forests: Query<(Entity, &mut ForestCells, Option<&mut ForestChanges>)>,
+    grown: Query<(), With<Grown>>,
     mut felled: MessageWriter<TreeFelled>,
 ) {
     for (forest, mut cells, changes) in &mut forests {
@@ -26,9 +31,23 @@ pub(super) fn apply_changes(
         for FelledStem { stem, place, species, tree } in stems {
             let tree = tree.map(|tree| tree.entity);
             if let Some(tree) = tree {
-                commands.entity(tree).try_despawn();
+                let falls = cells.settings().felled_trees_fall && grown.contains(tree);
+                fell_or_remove(tree, falls, &mut commands);
             }
             felled.write(TreeFelled { forest, tree, id: stem.id, place, species });
         }
     }
+}
+
+/// Lets a tree fall, or removes it.
+fn fell_or_remove(tree: Entity, falls: bool, commands: &mut Commands) {
+    // The game may have despawned it.
+    let Ok(mut tree) = commands.get_entity(tree) else { return };
+    if !falls {
+        tree.try_despawn();
+        return;
+    }
+    tree.try_remove::<StemId>().try_insert(FallingTree::default());
+    #[cfg(feature = "render")]
+    tree.try_remove::<HasImpostor>();
 }

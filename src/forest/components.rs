@@ -46,6 +46,8 @@ pub struct ForestSettings {
     pub articulated_to_m: f32,
     /// Whether near cells feel the wind: each has a [`WindCell`](crate::wind::WindCell) in its middle, 10 m over the ground.
     pub wind_cells: bool,
+    /// Whether near trees that are felled [fall](super::FallingTree), and lie there until nobody is near any longer. Otherwise they vanish.
+    pub felled_trees_fall: bool,
 }
 
 impl Default for ForestSettings {
@@ -58,6 +60,7 @@ impl Default for ForestSettings {
             trees_per_frame: 64,
             articulated_to_m: 0.0,
             wind_cells: false,
+            felled_trees_fall: true,
         }
     }
 }

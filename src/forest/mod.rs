@@ -7,6 +7,10 @@
 //!   trees and impostors take the plants of a tile when it comes.
 //! - `near` and `stream_trees` spawn the plants of near cells as [`Tree`](crate::tree::Tree)s, a few a frame. What stands where follows from
 //!   the plan alone, in whatever order cells come. When the plan changes, trees that both plans have stay.
+//! - What a game changes is in [`ForestChanges`], by [`StemId`]. `change_index` has the changes by place, `cell_planter` plants cells after
+//!   them, `apply_changes` and `changed_cells` take them over: near trees at once (`near_changes`), the rest when its tile has been planted
+//!   again. [`ForestEditor`] refuses what cannot be; `stems` tells which stem stands where, `messages` what becomes of trees.
+//! - `falling` lets trees fall.
 //! - `near_services` gives cells a wind of their own and the nearest trees beams and leaves as entities, where that is asked for.
 //! - `stand` knows how high and dense the trees about a place are, and how open it is, for the wind among them; `stand_species` makes it
 //!   ready, `cell_canopies` works it out for a cell, `give_canopies` gives it to near trees.
@@ -32,6 +36,7 @@ mod cull;
 mod diagnose;
 mod editor;
 mod extent;
+mod falling;
 mod give_canopies;
 #[cfg(feature = "render")]
 mod impostors;
@@ -58,6 +63,7 @@ pub use changes::{ForestChanges, NewStem};
 pub use components::{Forest, ForestCell, ForestGround, ForestSettings};
 pub use cover::{PlanCover, StandingGround};
 pub use editor::ForestEditor;
+pub use falling::{FallenTree, FallingTree, Stump};
 pub use messages::{TreeEntered, TreeFelled, TreeLeft};
 pub use plugin::ForestPlugin;
 pub use stem_id::StemId;

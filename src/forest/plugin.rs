@@ -6,6 +6,7 @@ use super::{
     cells::{ForestCells, plant_cells},
     changes::ForestChanges,
     components::{Forest, ForestCell, ForestSettings},
+    falling::{FallenTree, FallingTree, Stump, advance_falls, begin_falls},
     give_canopies::give_canopies,
     messages::{TreeEntered, TreeFelled, TreeLeft},
     missing_species::{MissingPlanSpecies, report_missing_plan_species},
@@ -47,9 +48,14 @@ impl Plugin for ForestPlugin {
             .register_type::<ForestSettings>()
             .register_type::<ForestChanges>()
             .register_type::<StemId>()
+            .register_type::<FallingTree>()
+            .register_type::<FallenTree>()
+            .register_type::<Stump>()
             .add_observer(remove_made::<Forest, ForestCell, ForestCells>);
         let stream = timed!(
             app,
+            begin_falls,
+            advance_falls,
             begin_forests,
             report_missing_plan_species,
             prepare_stands,
