@@ -346,7 +346,7 @@ mod tests {
         let (changes, [.., planted]) = changed();
         let text = ron::to_string(&changes).unwrap();
         for (right, wrong) in
-            [("3.0)", "NaN)"), ("12.5", "-3.0"), ("[\"larch\",", "["), ("planted_so_far:1", "planted_so_far:0")]
+            [(",3.0,1)", ",NaN,1)"), ("12.5", "-3.0"), ("[\"larch\",", "["), ("planted_so_far:1", "planted_so_far:0")]
         {
             assert!(text.contains(right), "{text}");
             assert!(ron::from_str::<ForestChanges>(&text.replacen(right, wrong, 1)).is_err(), "{wrong}");

@@ -55,7 +55,8 @@ pub(in crate::forest) fn begin_falls(
         let (Some(model), Some(baked)) = (models.get(&grown.model), species.get(tree.species.id())) else { continue };
         let scale = f64::from(at.scale.y);
         let height_m = f64::from(model.height_m()) * scale;
-        let cut_m = f64::from(falling.cut_m).clamp(0.0, 0.5 * height_m);
+        // What is no number is 0.
+        let cut_m = f64::from(falling.cut_m.max(0.0)).min(0.5 * height_m);
         let year = Season { year: season.year + tree.season_shift() }.wrapped();
         let leaf_share = f64::from(model.leaf_season.share(year));
         let pieces = || tree_pieces(&baked.species, &model.skeleton);
@@ -118,5 +119,18 @@ pub(in crate::forest) fn advance_falls(
         if is_down {
             commands.entity(entity).remove::<(FallInProgress, FallingTree)>().insert((FallenTree, InCanopy(SHELTER)));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_heavy_side_is_that_of_the_centre_of_mass() {
+        let masses =
+            [(Vec3::new(0.0, 9.0, 0.0), 500.0), (Vec3::new(3.0, 8.0, 0.0), 20.0), (Vec3::new(0.0, 8.0, -4.0), 15.0)];
+        assert!(heavy_side(masses.into_iter()).distance(Vec2::new(1.0, -1.0).normalize()) < 1e-6);
+        assert_eq!(heavy_side(masses.into_iter().take(1)), Vec2::X, "an upright pole falls somewhere");
     }
 }
