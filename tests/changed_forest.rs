@@ -376,3 +376,36 @@ fn changes_on_the_way_lead_to_the_forest_that_begins_with_them() {
     assert!(both.len() > 200, "{} cells", both.len());
     assert!(both.iter().all(|cell| ours[*cell] == theirs[*cell]));
 }
+
+/// Its first rows shelter a wood: where they are cut, the wind comes in.
+#[test]
+fn trees_beside_a_clearing_lose_their_shelter() {
+    let mut world = World::new(default());
+    world.edit_plan(|plan| plan.areas[0].shape = Shape::Rectangle { min_m: [-300.0; 2], max_m: [300.0; 2] });
+    let open_to_x = |world: &mut World| {
+        let app = &mut world.app;
+        let mut trees = app.world_mut().query_filtered::<(&Transform, &InCanopy), With<StemId>>();
+        let row = trees.iter(app.world()).filter(|(at, _)| (0.0..8.0).contains(&at.translation.x));
+        let open: Vec<f32> = row.map(|(_, canopy)| canopy.0.exposure[0]).collect();
+        (open.len() > 10).then(|| open.iter().sum::<f32>() / open.len() as f32)
+    };
+    let wait = |world: &mut World, is_done: &dyn Fn(f32) -> bool| {
+        (0..3000).find_map(|_| {
+            world.app.update();
+            std::thread::sleep(std::time::Duration::from_millis(2));
+            open_to_x(world).filter(|open| is_done(*open))
+        })
+    };
+    world.settle();
+    wait(&mut world, &|open| open < 0.1).expect("it is sheltered in the wood");
+    let mut felled = Vec::new();
+    world.cells().stems_within(Vec2::new(-150.0, 0.0), 300.0, |stem| {
+        felled.extend((stem.plant.position.x < 0.0).then_some(stem.id));
+    });
+    assert!(felled.len() > 500);
+    felled.into_iter().for_each(|id| world.changes().fell(id).unwrap());
+    wait(&mut world, &|open| open > 0.5).expect("the wind comes in");
+    let changes = saved(&world.changes());
+    let mut loaded = World::new(changes);
+    wait(&mut loaded, &|open| open > 0.3).expect("so it does after loading");
+}

@@ -66,6 +66,9 @@ pub struct ForestCells {
     /// The wind among its trees, once its species are known; and how often it was another.
     stand: Option<Arc<Stand>>,
     stand_generation: u64,
+    /// Whether it has to be worked out again, and the task that does.
+    pub(super) stand_is_due: bool,
+    pub(super) stand_task: Option<Task<Stand>>,
     /// From where on impostors stand for its trees, m; none until they are drawn.
     #[cfg(feature = "render")]
     pub(super) impostors_from_m: Option<f32>,
@@ -113,6 +116,8 @@ impl ForestCells {
             ground,
             stand: None,
             stand_generation: 0,
+            stand_is_due: false,
+            stand_task: None,
             species,
             settings,
             orders: Orders::default(),

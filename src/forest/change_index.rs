@@ -69,6 +69,21 @@ impl TileChanges {
         }
     }
 
+    /// The cells in which stems of the plan are felled, and how many. Cells have that side, m.
+    pub fn felled_by_cell(&self, cell_m: f64) -> HashMap<IVec2, u32> {
+        let mut cells = HashMap::default();
+        let felled = self.stems.iter().filter(|(_, stem)| **stem == AlteredStem::Felled);
+        for place_m in felled.filter_map(|(id, _)| id.place_m()) {
+            *cells.entry((place_m.as_dvec2() / cell_m).floor().as_ivec2()).or_default() += 1;
+        }
+        cells
+    }
+
+    /// Cell, number of the species and age in years of each stem that the game has planted.
+    pub fn planted(&self) -> impl Iterator<Item = (IVec2, u8, f32)> {
+        self.added.iter().map(|((row, column, _), stem)| (IVec2::new(*column, *row), stem.species, stem.age_years))
+    }
+
     fn is_empty(&self) -> bool {
         self.stems.is_empty() && self.added.is_empty()
     }
@@ -127,6 +142,11 @@ impl ChangeIndex {
     /// Where (x, z) a stem stands that the game has planted, m.
     pub fn planted_place_m(&self, id: StemId) -> Option<Vec2> {
         self.planted_m.get(&id).copied()
+    }
+
+    /// The changes of all tiles, in no order.
+    pub fn tiles(&self) -> Vec<Arc<TileChanges>> {
+        self.tiles.values().cloned().collect()
     }
 
     /// The tile of a cell.

@@ -6,6 +6,7 @@ use super::{
     changes::ForestChanges,
     journal::{ChangedStem, Journal},
     near_cell::NearTree,
+    stand::REACH_M,
 };
 use crate::{scatter::Stem, tree::Species};
 use bevy::{
@@ -49,11 +50,13 @@ impl ForestCells {
             (_, before) => {
                 let index = ChangeIndex::of(changes, &self.planter, tile_cells);
                 let cells = before.as_ref().map(|before| index.cells_that_differ(before));
+                self.stand_is_due |= !index.is_empty();
                 *before = Some(index);
                 // Where there were none, nothing has been planted yet, or all is planted anew after the plan has changed.
                 cells.unwrap_or_default()
             }
         };
+        self.stand_is_due |= self.near.is_any_near(&cells, REACH_M);
         let mut at_once = self.settings.cells_at_once;
         for cell in cells {
             self.change_cell(cell, &mut at_once);
@@ -112,6 +115,12 @@ impl ForestCells {
     /// So far a stem of the store may be from where it stands, m.
     pub(super) fn rounding_m(&self, place_m: Vec2) -> f32 {
         ROUNDING_STEPS * self.store.cell_m() / f32::from(u16::MAX) + place_m.abs().max_element() * f32::EPSILON
+    }
+
+    /// Has the stand worked out again if there are changes.
+    pub(super) fn note_changed_stand(&mut self) {
+        self.stand_task = None;
+        self.stand_is_due = self.changes.as_ref().is_some_and(|index| !index.is_empty());
     }
 
     /// Whether impostors are made of its tiles.

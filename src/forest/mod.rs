@@ -10,7 +10,7 @@
 //! - What a game changes is in [`ForestChanges`], by [`StemId`]. `change_index` has the changes by place, `cell_planter` plants cells after
 //!   them, `apply_changes` and `changed_cells` take them over: near trees at once (`near_changes`), the rest when its tile has been planted
 //!   again. [`ForestEditor`] refuses what cannot be; `stems` tells which stem stands where, `messages` what becomes of trees.
-//! - `falling` lets trees fall.
+//! - `falling` lets trees fall. `renew_stands` has the wind among the trees follow what was felled and planted (`stand_changes`).
 //! - `near_services` gives cells a wind of their own and the nearest trees beams and leaves as entities, where that is asked for.
 //! - `stand` knows how high and dense the trees about a place are, and how open it is, for the wind among them; `stand_species` makes it
 //!   ready, `cell_canopies` works it out for a cell, `give_canopies` gives it to near trees.
@@ -52,7 +52,9 @@ mod near_services;
 mod planted_tile;
 mod plugin;
 mod reach;
+mod renew_stands;
 mod stand;
+mod stand_changes;
 mod stand_species;
 mod stem_id;
 mod stems;

@@ -40,7 +40,7 @@ pub(super) enum Planting {
 
 /// The near cells of a forest.
 pub(super) struct NearTrees {
-    cell_m: f32,
+    pub(super) cell_m: f32,
     /// Cells along a side of a tile.
     tile_cells: i32,
     stream: CellStream,

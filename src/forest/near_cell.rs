@@ -78,7 +78,14 @@ impl NearCell {
             let task = self.canopy_task.take().filter(|(of, _)| *of == generation);
             let (_, mut task) = task.unwrap_or_else(|| (generation, work_out()));
             match block_on(poll_once(&mut task)) {
-                Some(canopies) => self.canopies = Some((generation, canopies)),
+                Some(canopies) => {
+                    // Where nothing has changed, trees keep what they have been given.
+                    if let Some((before, _)) = self.canopies.as_ref().filter(|(_, others)| *others == canopies) {
+                        let same = self.spawned.iter_mut().filter(|tree| tree.canopy_of == *before);
+                        same.for_each(|tree| tree.canopy_of = generation);
+                    }
+                    self.canopies = Some((generation, canopies));
+                }
                 None => {
                     self.canopy_task = Some((generation, task));
                     return false;

@@ -75,7 +75,8 @@ pub(in crate::forest) fn begin_falls(
         let progress = FallInProgress {
             body,
             fall: Fall { angle_rad: 0.0, speed_rad_s: FIRST_SPEED_RAD_S },
-            resting_rad: resting_rad(height_m - cut_m, radius_m, rise_m),
+            // Where it hinges the stem's axis is no higher above the ground than the cut.
+            resting_rad: resting_rad(height_m - cut_m, radius_m.min(cut_m), rise_m),
             upright: *at,
             hinge,
             axis: Vec3::Y.cross(Vec3::new(towards.x, 0.0, towards.y)),
