@@ -99,7 +99,10 @@ pub mod prelude {
     pub use crate::{
         Ground, Viewpoint, WindwoodMinimalPlugins, WindwoodPlugins, WindwoodSystems,
         fire::{Fire, FireLook, FireShape},
-        forest::{Forest, ForestGround, ForestSettings},
+        forest::{
+            FallenTree, FallingTree, Forest, ForestChanges, ForestEditor, ForestGround, ForestSettings, NewStem,
+            StemId, Stump,
+        },
         grass::{GrassField, GrassGround, GrassLook, GrassPatch, GrassResponse, Sward, Tuft},
         sway::{ActiveSway, InCanopy, SwaySettings},
         terrain::{GroundLook, Terrain, TerrainFile, TerrainSettings},

@@ -1,11 +1,11 @@
-//! An edited plan changes the impostors of those tiles whose plants it changes, and no others. Needs a Vulkan driver. Mesa's software one
+//! An edited plan changes the impostors of those tiles whose plants it changes, and no others. So do changes of single stems. Needs a Vulkan driver. Mesa's software one
 //! will do.
 
 mod support;
 
 use bevy::prelude::*;
 use bevy_windwood::{
-    forest::{ForestCell, ForestImpostors},
+    forest::{ForestCell, ForestCells, ForestImpostors},
     prelude::*,
     scatter::{ForestPlan, plan::Shape},
 };
@@ -63,4 +63,39 @@ fn tiles_whose_plants_stay_keep_their_meshes() {
     let again = tiles(&mut forest);
     assert_eq!((again.len(), impostors(&mut forest)), (before.len(), trees_before));
     assert!(kept.iter().all(|(entity, tile)| again.get(*entity) == Some(*tile)), "a tile was made anew");
+}
+
+/// Updates until all changes are drawn.
+fn draw_changes(forest: &mut TestForest) {
+    assert!(support::update_until(&mut forest.app, |world| {
+        let is_up_to_date = world.query::<&ForestCells>().iter(world).all(ForestCells::is_up_to_date);
+        is_up_to_date && capture::forests_are_drawn(world)
+    }));
+}
+
+#[test]
+fn felled_and_planted_stems_change_the_impostors_of_their_tiles_alone() {
+    let mut forest = TestForest::new(ForestSettings { trees_to_m: 40.0, far_to_m: 900.0, ..default() }, None);
+    let (before, trees_before) = (tiles(&mut forest), impostors(&mut forest));
+    let world = forest.app.world_mut();
+    let (cells, mut changes) =
+        world.query::<(&ForestCells, &mut ForestChanges)>().single_mut(world).expect("one forest");
+    let [far, near] = [Vec2::new(150.0, 150.0), Vec2::new(5.0, 5.0)]
+        .map(|place_m| cells.nearest_stem(place_m, 50.0).expect("a stem").id);
+    changes.fell(far).expect("it stands");
+    draw_changes(&mut forest);
+    assert_eq!(impostors(&mut forest), trees_before - 1);
+    let after = tiles(&mut forest);
+    let kept = before.iter().filter(|(entity, tile)| after.get(*entity) == Some(*tile)).count();
+    assert_eq!((kept, after.len()), (before.len() - 1, before.len()), "one tile was made anew");
+
+    let world = forest.app.world_mut();
+    let mut changes = world.query::<&mut ForestChanges>().single_mut(world).expect("one forest");
+    changes.fell(near).expect("it stands");
+    for x in [-150.0, -149.0] {
+        let stem = NewStem { place_m: Vec2::new(x, 150.0), species: "fir".into(), age_years: 60.0 };
+        changes.plant(&stem).expect("it can be planted");
+    }
+    draw_changes(&mut forest);
+    assert_eq!(impostors(&mut forest), trees_before);
 }

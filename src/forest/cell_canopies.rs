@@ -15,6 +15,7 @@ const SPACING_M: f32 = 16.0;
 const MOST_PLACES: u32 = 9;
 
 /// The stand of a cell: at places in rows from corner to corner.
+#[derive(PartialEq)]
 pub(super) struct CellCanopies {
     corner_m: DVec2,
     spacing_m: f32,

@@ -2,6 +2,8 @@
 //! take what they need of each tile when it comes.
 
 use super::{
+    cell_planter::CellPlanter,
+    change_index::ChangeIndex,
     components::ForestSettings,
     near::{CellTask, NearTrees},
     planted_tile::{PlantedTile, cells_of_tile},
@@ -23,35 +25,50 @@ use bevy::{
     prelude::*,
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
 };
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
 /// A tile's plants, and its cells packed for the store.
-type Planting = Task<(Arc<PlantedTile>, Vec<(IVec2, Cell)>)>;
+pub(super) type PackedTile = (Arc<PlantedTile>, Vec<(IVec2, Cell)>);
+
+/// A known tile that is planted again, and the cells of it in which near trees may have become others.
+pub(super) struct Replanting {
+    pub tile: IVec2,
+    pub cells: Vec<IVec2>,
+    pub task: Task<PackedTile>,
+}
 
 /// A forest that grows: its plan made ready, and its cells about the viewers with every stem that stands there.
 #[derive(Component)]
 pub struct ForestCells {
-    planter: Arc<Planter>,
-    ground: Arc<dyn Ground>,
-    species: Vec<Handle<Species>>,
+    pub(super) planter: Arc<Planter>,
+    pub(super) ground: Arc<dyn Ground>,
+    pub(super) species: Vec<Handle<Species>>,
     /// Settings in force: the last that were valid.
-    settings: ForestSettings,
-    store: CellStore,
+    pub(super) settings: ForestSettings,
+    pub(super) store: CellStore,
     /// Cells along a side of a tile.
     tile_cells: i32,
     stream: CellStream,
     orders: Orders,
-    planting: Vec<(IVec2, Planting)>,
-    tiles: HashMap<IVec2, KnownTile>,
+    pub(super) planting: Vec<(IVec2, Task<PackedTile>)>,
+    pub(super) tiles: HashMap<IVec2, KnownTile>,
+    /// What is other than in the plan; none until that has been found out.
+    pub(super) changes: Option<ChangeIndex>,
+    /// Tiles with changes that are still to be planted again, by row and column, and the cells of each in which near trees may be others.
+    pub(super) changed_tiles: BTreeMap<(i32, i32), Vec<IVec2>>,
+    pub(super) replanting: Vec<Replanting>,
     /// Tiles of the plan before, whose cells are in the store.
     outdated: usize,
     /// Tiles that impostors have still to be made of, where there are impostors.
     #[cfg(feature = "render")]
-    for_impostors: Option<Vec<(IVec2, Arc<PlantedTile>)>>,
+    pub(super) for_impostors: Option<Vec<(IVec2, Arc<PlantedTile>)>>,
     pub(super) near: NearTrees,
     /// The wind among its trees, once its species are known; and how often it was another.
     stand: Option<Arc<Stand>>,
     stand_generation: u64,
+    /// Whether it has to be worked out again, and the task that does.
+    pub(super) stand_is_due: bool,
+    pub(super) stand_task: Option<Task<Stand>>,
     /// From where on impostors stand for its trees, m; none until they are drawn.
     #[cfg(feature = "render")]
     pub(super) impostors_from_m: Option<f32>,
@@ -61,9 +78,10 @@ pub struct ForestCells {
 }
 
 /// A tile whose cells are in the store.
-struct KnownTile {
-    fingerprint: u64,
-    is_outdated: bool,
+pub(super) struct KnownTile {
+    /// Of the plants that the store and the impostors have; none where some of them are known to be others.
+    pub fingerprint: Option<u64>,
+    pub is_outdated: bool,
 }
 
 /// The tiles that are up to date.
@@ -98,11 +116,16 @@ impl ForestCells {
             ground,
             stand: None,
             stand_generation: 0,
+            stand_is_due: false,
+            stand_task: None,
             species,
             settings,
             orders: Orders::default(),
             planting: Vec::new(),
             tiles: HashMap::default(),
+            changes: None,
+            changed_tiles: BTreeMap::new(),
+            replanting: Vec::new(),
             outdated: 0,
             #[cfg(feature = "render")]
             for_impostors: None,
@@ -133,7 +156,7 @@ impl ForestCells {
         self.stand_generation = before.stand_generation;
         // Where impostors have come or gone, trees have to be others.
         if (before.settings.far_to_m > 0.0) != (self.settings.far_to_m > 0.0) {
-            return before.near.entities().collect();
+            return self.near.discard(&mut before.near);
         }
         #[cfg(feature = "render")]
         {
@@ -201,16 +224,13 @@ impl ForestCells {
     pub(super) fn parts(
         &mut self,
     ) -> (&mut NearTrees, &[Handle<Species>], &ForestSettings, impl Fn(IVec2) -> Option<CellTask>) {
-        let Self { near, species, settings, tiles, tile_cells, planter, ground, .. } = self;
+        let Self { near, species, settings, tiles, tile_cells, planter, ground, changes, .. } = self;
         let plant = |cell: IVec2| {
             let tile = cell.div_euclid(IVec2::splat(*tile_cells));
-            let (planter, ground) = (planter.clone(), ground.clone());
             UpToDate(tiles).contains(tile).then(|| {
-                AsyncComputeTaskPool::get().spawn(async move {
-                    let mut planted = Vec::new();
-                    planter.plant(cell, &ground, &mut planted);
-                    planted
-                })
+                let changes = changes.as_ref().and_then(|changes| changes.tile(tile));
+                let planter = CellPlanter { planter: planter.clone(), ground: ground.clone(), changes };
+                AsyncComputeTaskPool::get().spawn(async move { planter.plants(cell) })
             })
         };
         (near, species, settings, plant)
@@ -226,45 +246,66 @@ impl ForestCells {
         self.receive();
         self.stream.step(viewpoints, &UpToDate(&self.tiles), &mut self.orders);
         self.drop_tiles();
-        for &tile in &self.orders.plant {
-            let (planter, ground, side) = (self.planter.clone(), self.ground.clone(), self.tile_cells);
-            let task = AsyncComputeTaskPool::get().spawn(async move {
-                let planted = PlantedTile::plant(&planter, &ground, tile, side);
-                let pack = |(cell, plants)| (cell, Cell::pack(plants, planter.corner_m(cell), planter.cell_m()));
-                let packed = planted.cells().map(pack).collect();
-                (Arc::new(planted), packed)
-            });
-            self.planting.push((tile, task));
+        for number in 0..self.orders.plant.len() {
+            let tile = self.orders.plant[number];
+            self.planting.push((tile, self.plant_tile(tile)));
+        }
+        self.replant_changed_tiles();
+    }
+
+    /// Has a tile planted.
+    pub(super) fn plant_tile(&self, tile: IVec2) -> Task<PackedTile> {
+        let (planter, side) = (self.cell_planter(tile), self.tile_cells);
+        AsyncComputeTaskPool::get().spawn(async move {
+            let planted = PlantedTile::plant(&planter, tile, side);
+            let packed = planted.cells().map(|(cell, plants)| (cell, planter.pack(cell, plants))).collect();
+            (Arc::new(planted), packed)
+        })
+    }
+
+    /// What plants the cells of a tile.
+    pub(super) fn cell_planter(&self, tile: IVec2) -> CellPlanter {
+        let changes = self.changes.as_ref().and_then(|changes| changes.tile(tile));
+        CellPlanter { planter: self.planter.clone(), ground: self.ground.clone(), changes }
+    }
+
+    /// Takes over tiles that were planted.
+    fn receive(&mut self) {
+        let mut planted = Vec::new();
+        self.planting.retain_mut(|(place, task)| {
+            let done = block_on(poll_once(task));
+            let is_awaited = done.is_none();
+            planted.extend(done.map(|packed| (*place, packed)));
+            is_awaited
+        });
+        for (place, packed) in planted {
+            if self.stream.fulfil(place) {
+                self.take_tile(place, packed);
+            }
         }
     }
 
-    /// Takes over tiles that were planted. One that has the plants that it had stays as it is.
-    fn receive(&mut self) {
-        let Self { planting, stream, tiles, outdated, near, store, .. } = self;
+    /// Takes over a tile that was planted. One that has the plants that it had stays as it is.
+    pub(super) fn take_tile(&mut self, place: IVec2, (planted, packed): PackedTile) {
+        self.near.offer(place, &planted);
+        // Cells that were changed while it was being planted will come again. Those that have been changed at once stay so until then.
+        let changed = self.changed_tiles.get(&(place.y, place.x)).map_or(&[][..], Vec::as_slice);
+        let fingerprint = changed.is_empty().then(|| planted.fingerprint());
+        let before = self.tiles.insert(place, KnownTile { fingerprint, is_outdated: false });
+        self.outdated -= usize::from(before.as_ref().is_some_and(|before| before.is_outdated));
+        if fingerprint.is_some() && before.is_some_and(|before| before.fingerprint == fingerprint) {
+            return;
+        }
+        for (cell, content) in packed {
+            if !changed.contains(&cell) || !self.store.contains(cell) {
+                self.store.insert(cell, content);
+            }
+        }
         #[cfg(feature = "render")]
-        let for_impostors = &mut self.for_impostors;
-        planting.retain_mut(|(place, task)| {
-            let Some((planted, packed)) = block_on(poll_once(task)) else { return true };
-            if !stream.fulfil(*place) {
-                return false;
-            }
-            near.offer(*place, &planted);
-            let known = KnownTile { fingerprint: planted.fingerprint(), is_outdated: false };
-            let before = tiles.insert(*place, known);
-            *outdated -= usize::from(before.as_ref().is_some_and(|before| before.is_outdated));
-            if before.is_some_and(|before| before.fingerprint == planted.fingerprint()) {
-                return false;
-            }
-            for (cell, content) in packed {
-                store.insert(cell, content);
-            }
-            #[cfg(feature = "render")]
-            if let Some(tiles) = for_impostors {
-                tiles.retain(|(other, _)| other != place);
-                tiles.push((*place, planted));
-            }
-            false
-        });
+        if let Some(tiles) = &mut self.for_impostors {
+            tiles.retain(|(other, _)| *other != place);
+            tiles.push((place, planted));
+        }
     }
 
     /// Drops tiles that nobody is near to any more, and outdated ones once all others are planted.
@@ -352,10 +393,9 @@ impl ForestCells {
         if let Ok(stream) = tile_stream(&self.planter, &self.settings, self.tile_cells) {
             self.stream = stream;
             self.planting.clear();
+            self.replanting.clear();
             self.outdated = self.tiles.len();
-            self.tiles
-                .values_mut()
-                .for_each(|tile| *tile = KnownTile { fingerprint: !tile.fingerprint, is_outdated: true });
+            self.tiles.values_mut().for_each(|tile| *tile = KnownTile { fingerprint: None, is_outdated: true });
         }
     }
 }

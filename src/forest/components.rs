@@ -1,5 +1,6 @@
 //! Forests as entities.
 
+use super::changes::ForestChanges;
 use crate::{
     ground::Ground,
     scatter::ForestPlan,
@@ -12,7 +13,7 @@ use std::sync::Arc;
 /// A forest that grows from a plan, in the world's own frame. Its trees and impostors have its `RenderLayers`.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component)]
-#[require(ForestSettings, Transform, Visibility)]
+#[require(ForestSettings, ForestChanges, Transform, Visibility)]
 pub struct Forest {
     /// Where what grows; hot reloads.
     pub plan: Handle<ForestPlan>,
@@ -45,6 +46,8 @@ pub struct ForestSettings {
     pub articulated_to_m: f32,
     /// Whether near cells feel the wind: each has a [`WindCell`](crate::wind::WindCell) in its middle, 10 m over the ground.
     pub wind_cells: bool,
+    /// Whether near trees that are felled [fall](super::FallingTree), and lie there until nobody is near any longer. Otherwise they vanish.
+    pub felled_trees_fall: bool,
 }
 
 impl Default for ForestSettings {
@@ -57,6 +60,7 @@ impl Default for ForestSettings {
             trees_per_frame: 64,
             articulated_to_m: 0.0,
             wind_cells: false,
+            felled_trees_fall: true,
         }
     }
 }

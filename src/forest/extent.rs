@@ -40,20 +40,18 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    pub fn of(planted: &[Planted]) -> Self {
+    pub fn of<'a>(plants: impl Iterator<Item = &'a Planted>) -> Self {
         let mut largest: Vec<(u8, f32)> = Vec::new();
-        for plant in planted {
+        let (mut lowest_m, mut highest_m) = (f32::INFINITY, f32::NEG_INFINITY);
+        for plant in plants {
+            lowest_m = lowest_m.min(plant.position.y);
+            highest_m = highest_m.max(plant.position.y);
             match largest.iter_mut().find(|(species, _)| *species == plant.species) {
                 Some((_, scale)) => *scale = scale.max(plant.vigour),
                 None => largest.push((plant.species, plant.vigour)),
             }
         }
-        let heights_m = || planted.iter().map(|plant| plant.position.y);
-        Self {
-            lowest_m: heights_m().fold(f32::INFINITY, f32::min),
-            highest_m: heights_m().fold(f32::NEG_INFINITY, f32::max),
-            largest: largest.into(),
-        }
+        Self { lowest_m, highest_m, largest: largest.into() }
     }
 
     /// Whether nothing stands in the cell.

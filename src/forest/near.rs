@@ -5,9 +5,10 @@ use super::extent::Extent;
 use super::{
     cell_canopies::CanopyTask,
     components::{ForestCell, ForestSettings},
-    near_cell::{NearCell, NearTree, tree},
+    near_cell::{NearCell, NearEvent, NearTree, tree},
     planted_tile::PlantedTile,
     reach::reaching,
+    stem_id::StemId,
 };
 use crate::{
     cells::{CellSet, CellStream, Orders, StreamSettings, ViewerPose},
@@ -27,10 +28,10 @@ use std::sync::Arc;
 const COMMON_CELL_M: f32 = 64.0;
 
 /// A cell that is planted alone.
-pub(super) type CellTask = Task<Vec<Planted>>;
+pub(super) type CellTask = Task<Vec<(StemId, Planted)>>;
 
 /// Where the plants of a cell come from.
-enum Planting {
+pub(super) enum Planting {
     /// From its tile, which is being planted, or has just been.
     Tile,
     /// Planted again, since its tile is known and gone.
@@ -39,23 +40,25 @@ enum Planting {
 
 /// The near cells of a forest.
 pub(super) struct NearTrees {
-    cell_m: f32,
+    pub(super) cell_m: f32,
     /// Cells along a side of a tile.
     tile_cells: i32,
     stream: CellStream,
     orders: Orders,
-    planting: Vec<(IVec2, Planting)>,
+    pub(super) planting: Vec<(IVec2, Planting)>,
     /// Tiles that came while near cells of them were missing, until none is.
-    tiles: HashMap<IVec2, Arc<PlantedTile>>,
-    cells: HashMap<IVec2, NearCell>,
+    pub(super) tiles: HashMap<IVec2, Arc<PlantedTile>>,
+    pub(super) cells: HashMap<IVec2, NearCell>,
     /// Cells whose trees are still to be spawned, in that order.
-    unspawned: Vec<IVec2>,
+    pub(super) unspawned: Vec<IVec2>,
     /// Cells of whose trees some lack the stand of this generation of the forest's.
-    without_canopies: Vec<IVec2>,
+    pub(super) without_canopies: Vec<IVec2>,
     canopies_of: u64,
-    changes: u64,
+    pub(super) changes: u64,
     /// Grows whenever the set of drawn cells may have changed.
-    drawn_changes: u64,
+    pub(super) drawn_changes: u64,
+    /// Trees that have come and gone, of whom is still to be told.
+    pub(super) events: Vec<NearEvent>,
 }
 
 /// The cells that are up to date.
@@ -101,14 +104,16 @@ impl NearTrees {
             canopies_of: 0,
             changes: 0,
             drawn_changes: 0,
+            events: Vec::new(),
         })
     }
 
     /// Takes over the trees of the plan before. Each cell keeps them until it is planted anew; then those stay that the new plan has too.
     /// Cells of another size are of no use: their entities are returned.
     pub fn take_over(&mut self, before: &mut Self) -> Vec<Entity> {
+        self.events.append(&mut before.events);
         if before.cell_m != self.cell_m {
-            return before.entities().collect();
+            return self.discard(before);
         }
         self.changes = before.changes + 1;
         self.drawn_changes = before.drawn_changes + 1;
@@ -118,6 +123,13 @@ impl NearTrees {
             cell.planted = Vec::new();
         }
         Vec::new()
+    }
+
+    /// Makes no use of what was before: its entities are returned.
+    pub fn discard(&mut self, before: &mut Self) -> Vec<Entity> {
+        let trees = before.cells.values().flat_map(NearCell::trees).cloned();
+        self.events.extend(trees.map(NearEvent::Left));
+        before.entities().collect()
     }
 
     /// Takes a tile that has been planted, if near cells of it are missing.
@@ -170,8 +182,7 @@ impl NearTrees {
     /// Every tree that is spawned.
     #[cfg(feature = "render")]
     pub fn trees(&self) -> impl Iterator<Item = Entity> {
-        let outdated = self.cells.values().flat_map(|cell| cell.outdated.iter().copied());
-        self.cells.values().flat_map(|cell| cell.spawned.iter().map(|tree| tree.entity)).chain(outdated)
+        self.cells.values().flat_map(NearCell::trees).map(|tree| tree.entity)
     }
 
     /// Grows whenever a cell comes or goes.
@@ -218,7 +229,7 @@ impl NearTrees {
                 Planting::Tile => {
                     let tile = tiles.get(&cell.div_euclid(IVec2::splat(*tile_cells)));
                     // One that nobody wants any more is waited for no longer.
-                    tile.map(|tile| tile.cell(*cell).to_vec()).or_else(|| (!stream.keeps(*cell)).then(Vec::new))
+                    tile.map(|tile| tile.stems(*cell)).or_else(|| (!stream.keeps(*cell)).then(Vec::new))
                 }
             };
             let Some(planted) = planted else { return true };
@@ -269,6 +280,7 @@ impl NearTrees {
         }
         for cell in &self.orders.drop {
             if let Some(there) = self.cells.remove(cell) {
+                self.events.extend(there.trees().cloned().map(NearEvent::Left));
                 commands.entity(there.entity).despawn();
                 self.changes += 1;
                 self.drawn_changes += 1;
@@ -279,11 +291,15 @@ impl NearTrees {
 
     /// Notes cells all of whose trees are drawn. Trees of the plan before go then.
     pub fn note_drawn(&mut self, is_drawn: impl Fn(Entity) -> bool, commands: &mut Commands) {
-        for cell in self.cells.values_mut().filter(|cell| !cell.is_drawn && cell.planted.is_empty()) {
-            cell.is_drawn = cell.spawned.iter().all(|tree| is_drawn(tree.entity));
-            if cell.is_drawn {
-                self.drawn_changes += 1;
-                cell.outdated.drain(..).for_each(|tree| commands.entity(tree).despawn());
+        let is_due = |cell: &&mut NearCell| cell.planted.is_empty() && (!cell.is_drawn || !cell.outdated.is_empty());
+        for cell in self.cells.values_mut().filter(is_due) {
+            if cell.spawned.iter().all(|tree| is_drawn(tree.entity)) {
+                self.drawn_changes += u64::from(!cell.is_drawn);
+                cell.is_drawn = true;
+                for tree in cell.outdated.drain(..) {
+                    commands.entity(tree.entity).despawn();
+                    self.events.push(NearEvent::Left(tree));
+                }
             }
         }
     }
@@ -300,11 +316,13 @@ impl NearTrees {
         while let Some(cell) = self.unspawned.first().and_then(|cell| self.cells.get_mut(cell)).filter(|_| left > 0) {
             let rest = cell.planted.len().saturating_sub(left);
             left -= cell.planted.len() - rest;
-            for plant in cell.planted.drain(rest..) {
+            for (id, plant) in cell.planted.drain(rest..) {
                 let handle = &species[usize::from(plant.species)];
-                let mut tree = commands.spawn((tree(&plant, handle.clone()), ChildOf(cell.entity)));
+                let mut tree = commands.spawn((tree(&plant, handle.clone()), id, ChildOf(cell.entity)));
                 mark(&mut tree);
-                cell.spawned.push(NearTree { plant, species: handle.id(), entity: tree.id(), canopy_of: 0 });
+                let spawned = NearTree { id, plant, species: handle.id(), entity: tree.id(), canopy_of: 0 };
+                self.events.push(NearEvent::Entered(spawned.clone()));
+                cell.spawned.push(spawned);
             }
             if cell.planted.is_empty() {
                 self.unspawned.remove(0);

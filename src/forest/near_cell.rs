@@ -3,6 +3,7 @@
 use super::{
     cell_canopies::{CanopyTask, CellCanopies},
     extent::Extent,
+    stem_id::StemId,
 };
 use crate::{
     scatter::Planted,
@@ -18,10 +19,10 @@ use bevy::{
 pub(super) struct NearCell {
     pub entity: Entity,
     /// What is still to be spawned.
-    pub planted: Vec<Planted>,
+    pub planted: Vec<(StemId, Planted)>,
     pub spawned: Vec<NearTree>,
-    /// Trees of the plan before, which go when all of this one are drawn.
-    pub outdated: Vec<Entity>,
+    /// Trees of the plan before, or that were changed, which go when all others are drawn.
+    pub outdated: Vec<NearTree>,
     /// Whether it is of the plan before.
     pub is_outdated: bool,
     /// Whether all of its trees are drawn.
@@ -34,7 +35,9 @@ pub(super) struct NearCell {
 }
 
 /// A tree of a near cell, and the plant that it is.
+#[derive(Clone, Debug)]
 pub(super) struct NearTree {
+    pub id: StemId,
     pub plant: Planted,
     pub species: AssetId<Species>,
     pub entity: Entity,
@@ -42,11 +45,17 @@ pub(super) struct NearTree {
     pub canopy_of: u64,
 }
 
+/// A tree that has come, or gone.
+pub(super) enum NearEvent {
+    Entered(NearTree),
+    Left(NearTree),
+}
+
 impl NearCell {
-    pub fn new(entity: Entity, planted: Vec<Planted>) -> Self {
+    pub fn new(entity: Entity, planted: Vec<(StemId, Planted)>) -> Self {
         Self {
             entity,
-            extent: Extent::of(&planted),
+            extent: Extent::of(planted.iter().map(|(_, plant)| plant)),
             is_drawn: planted.is_empty(),
             planted,
             spawned: Vec::new(),
@@ -69,7 +78,14 @@ impl NearCell {
             let task = self.canopy_task.take().filter(|(of, _)| *of == generation);
             let (_, mut task) = task.unwrap_or_else(|| (generation, work_out()));
             match block_on(poll_once(&mut task)) {
-                Some(canopies) => self.canopies = Some((generation, canopies)),
+                Some(canopies) => {
+                    // Where nothing has changed, trees keep what they have been given.
+                    if let Some((before, _)) = self.canopies.as_ref().filter(|(_, others)| *others == canopies) {
+                        let same = self.spawned.iter_mut().filter(|tree| tree.canopy_of == *before);
+                        same.for_each(|tree| tree.canopy_of = generation);
+                    }
+                    self.canopies = Some((generation, canopies));
+                }
                 None => {
                     self.canopy_task = Some((generation, task));
                     return false;
@@ -84,19 +100,25 @@ impl NearCell {
         self.planted.is_empty()
     }
 
+    /// All of its trees.
+    pub fn trees(&self) -> impl Iterator<Item = &NearTree> {
+        self.spawned.iter().chain(&self.outdated)
+    }
+
     /// The same cell of another plan: trees that both have stay.
-    pub fn planted_anew(mut self, planted: Vec<Planted>, species: &[Handle<Species>]) -> Self {
+    pub fn planted_anew(mut self, planted: Vec<(StemId, Planted)>, species: &[Handle<Species>]) -> Self {
         let mut before = std::mem::take(&mut self.spawned);
         let mut cell = Self { outdated: std::mem::take(&mut self.outdated), ..Self::new(self.entity, planted) };
-        cell.planted.retain(|plant| {
-            let id = species[usize::from(plant.species)].id();
-            let is_same =
-                |tree: &NearTree| tree.species == id && Planted { species: plant.species, ..tree.plant } == *plant;
+        cell.planted.retain(|(id, plant)| {
+            let species = species[usize::from(plant.species)].id();
+            let is_same = |tree: &NearTree| {
+                tree.id == *id && tree.species == species && Planted { species: plant.species, ..tree.plant } == *plant
+            };
             let Some(place) = before.iter().position(is_same) else { return true };
             cell.spawned.push(NearTree { plant: *plant, ..before.swap_remove(place) });
             false
         });
-        cell.outdated.extend(before.into_iter().map(|tree| tree.entity));
+        cell.outdated.extend(before);
         cell.is_drawn = cell.planted.is_empty() && cell.outdated.is_empty();
         cell
     }

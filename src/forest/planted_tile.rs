@@ -6,12 +6,13 @@
 //! comes near to a tile long after it was planted are cells planted again, one by one, for the near trees: that is one cell in a hundred
 //! of those that are known.
 
-use crate::{
-    ground::Ground,
-    scatter::{Planted, Planter},
-};
+use super::{cell_planter::CellPlanter, stem_id::StemId};
+use crate::scatter::Planted;
 use bevy::{math::IVec2, platform::hash::FixedState};
-use std::hash::{BuildHasher, Hasher};
+use std::{
+    hash::{BuildHasher, Hasher},
+    ops::Range,
+};
 
 /// Cells along a side of a tile, at least.
 const MIN_CELLS: i32 = 4;
@@ -35,6 +36,8 @@ pub(super) struct PlantedTile {
     side: i32,
     /// Cell after cell, row after row.
     plants: Vec<Planted>,
+    /// Which stem each is.
+    ids: Vec<StemId>,
     /// Where the plants of each cell end.
     ends: Box<[u32]>,
     fingerprint: u64,
@@ -42,18 +45,20 @@ pub(super) struct PlantedTile {
 
 impl PlantedTile {
     /// Plants a tile of `side` cells along a side.
-    pub fn plant(planter: &Planter, ground: &impl Ground, tile: IVec2, side: i32) -> Self {
+    pub fn plant(planter: &CellPlanter, tile: IVec2, side: i32) -> Self {
         let first = tile * side;
-        let (mut plants, mut planted) = (Vec::new(), Vec::new());
+        let (mut plants, mut ids, mut planted, mut ids_of_cell) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let mut ends = Vec::with_capacity((side * side) as usize);
         for cell in 0..side * side {
-            planter.plant(first + IVec2::new(cell % side, cell / side), ground, &mut planted);
+            planter.plant(first + IVec2::new(cell % side, cell / side), &mut planted, &mut ids_of_cell);
             plants.append(&mut planted);
+            ids.append(&mut ids_of_cell);
             ends.push(plants.len() as u32);
         }
         plants.shrink_to_fit();
+        ids.shrink_to_fit();
         let fingerprint = fingerprint(&plants, &ends);
-        Self { first, side, plants, ends: ends.into(), fingerprint }
+        Self { first, side, plants, ids, ends: ends.into(), fingerprint }
     }
 
     /// All of its plants.
@@ -72,10 +77,20 @@ impl PlantedTile {
 
     /// The plants of one of its cells.
     pub fn cell(&self, cell: IVec2) -> &[Planted] {
+        &self.plants[self.range(cell)]
+    }
+
+    /// The plants of one of its cells, and which stems they are.
+    pub fn stems(&self, cell: IVec2) -> Vec<(StemId, Planted)> {
+        let range = self.range(cell);
+        self.ids[range.clone()].iter().copied().zip(self.plants[range].iter().copied()).collect()
+    }
+
+    fn range(&self, cell: IVec2) -> Range<usize> {
         let at = cell - self.first;
         let number = (at.y * self.side + at.x) as usize;
         let begin = number.checked_sub(1).map_or(0, |before| self.ends[before]);
-        &self.plants[begin as usize..self.ends[number] as usize]
+        begin as usize..self.ends[number] as usize
     }
 
     /// The same for tiles with the same plants; with others the same once in 2^64.
@@ -105,27 +120,31 @@ mod tests {
     use crate::{
         ground::LevelGround,
         scatter::{
-            ForestPlan,
+            ForestPlan, Planter,
             plan::{Area, Stock},
         },
         tree::growth::age::Age,
     };
+    use std::sync::Arc;
 
-    fn planter(density_per_ha: f32) -> Planter {
-        let area = Area { density_per_ha, ..Area::default() };
-        Planter::new(&ForestPlan { areas: vec![area], ..ForestPlan::default() }).expect("a valid plan")
+    fn planter(area: Area) -> CellPlanter {
+        let planter = Planter::new(&ForestPlan { areas: vec![area], ..ForestPlan::default() }).expect("a valid plan");
+        CellPlanter { planter: Arc::new(planter), ground: Arc::new(LevelGround::default()), changes: None }
+    }
+
+    fn wood(density_per_ha: f32) -> CellPlanter {
+        planter(Area { density_per_ha, ..Area::default() })
     }
 
     #[test]
     fn a_tile_holds_what_its_cells_hold_when_they_are_planted_alone() {
-        let (planter, ground) = (planter(300.0), LevelGround::default());
+        let wood = wood(300.0);
         for tile in [IVec2::ZERO, IVec2::new(-1, 0), IVec2::new(-1, -1)] {
-            let planted = PlantedTile::plant(&planter, &ground, tile, 4);
-            let mut alone = Vec::new();
+            let planted = PlantedTile::plant(&wood, tile, 4);
             let mut count = 0;
             for (cell, plants) in planted.cells() {
-                planter.plant(cell, &ground, &mut alone);
-                assert_eq!(plants, alone);
+                assert_eq!(planted.stems(cell), wood.plants(cell));
+                assert!(planted.stems(cell).iter().map(|(_, plant)| plant).eq(plants));
                 assert_eq!(cell.div_euclid(IVec2::splat(4)), tile);
                 count += plants.len();
             }
@@ -140,8 +159,7 @@ mod tests {
 
     #[test]
     fn fingerprints_tell_tiles_apart() {
-        let ground = LevelGround::default();
-        let of = |density_per_ha, tile| PlantedTile::plant(&planter(density_per_ha), &ground, tile, 4).fingerprint();
+        let of = |density_per_ha, tile| PlantedTile::plant(&wood(density_per_ha), tile, 4).fingerprint();
         let here = of(300.0, IVec2::ZERO);
         assert_eq!(here, of(300.0, IVec2::ZERO));
         assert_ne!(here, of(310.0, IVec2::ZERO));
@@ -159,9 +177,8 @@ mod tests {
         for age_years in [5.0, 10.0, 20.0, 40.0, 80.0, 120.0, 200.0, 400.0] {
             let stock =
                 Stock { age_years, age_spread_years: 0.0, size_spread: 0.0, full_grown_years, ..Stock::default() };
-            let area = Area { stock: vec![stock], ..Area::default() };
-            let planter = Planter::new(&ForestPlan { areas: vec![area], ..ForestPlan::default() }).expect("a plan");
-            let tile = PlantedTile::plant(&planter, &LevelGround::default(), IVec2::ZERO, 4);
+            let wood = planter(Area { stock: vec![stock], ..Area::default() });
+            let tile = PlantedTile::plant(&wood, IVec2::ZERO, 4);
             let plan_size = tile.plants()[0].plan_size;
             let height = age.stage(age_years).height / greatest;
             assert!((plan_size - height).abs() < 0.08, "{age_years} years: {plan_size} and {height}");

@@ -1,13 +1,19 @@
 //! Registers forests.
 
 use super::{
+    apply_changes::apply_changes,
     begin::begin_forests,
     cells::{ForestCells, plant_cells},
+    changes::ForestChanges,
     components::{Forest, ForestCell, ForestSettings},
+    falling::{FallenTree, FallingTree, Stump, advance_falls, begin_falls},
     give_canopies::give_canopies,
+    messages::{TreeEntered, TreeFelled, TreeLeft},
     missing_species::{MissingPlanSpecies, report_missing_plan_species},
     near_services::{articulate_near_trees, spawn_wind_cells},
+    renew_stands::renew_stands,
     stand_species::{StandSpeciesLibrary, prepare_stands},
+    stem_id::StemId,
     stream_trees::stream_trees,
 };
 use crate::{
@@ -36,14 +42,26 @@ impl Plugin for ForestPlugin {
             .register_asset_reflect::<ForestPlan>()
             .init_resource::<StandSpeciesLibrary>()
             .add_message::<MissingPlanSpecies>()
+            .add_message::<TreeEntered>()
+            .add_message::<TreeLeft>()
+            .add_message::<TreeFelled>()
             .register_type::<Forest>()
             .register_type::<ForestSettings>()
+            .register_type::<ForestChanges>()
+            .register_type::<StemId>()
+            .register_type::<FallingTree>()
+            .register_type::<FallenTree>()
+            .register_type::<Stump>()
             .add_observer(remove_made::<Forest, ForestCell, ForestCells>);
         let stream = timed!(
             app,
+            begin_falls,
+            advance_falls,
             begin_forests,
             report_missing_plan_species,
             prepare_stands,
+            apply_changes,
+            renew_stands,
             plant_cells,
             stream_trees,
             give_canopies,

@@ -1,8 +1,9 @@
 //! The stand that a plan grows, as the wind feels it: how high and dense it is about a place, and how far the place is open to each side.
 //!
 //! It follows from the plan's expected densities and not from the single plants. So it needs no other cells, and a tree's own crown
-//! counts as much as its neighbours'.
+//! counts as much as its neighbours'. What a game has felled and planted counts cell by cell.
 
+use super::stand_changes::CellBalances;
 use crate::{
     ground::Ground,
     scatter::Planter,
@@ -12,9 +13,11 @@ use crate::{
 use bevy::math::DVec2;
 use std::sync::Arc;
 
-/// Steps in which one looks upwind, m, the nearest first: what is far away is felt less. Of what is farther than their sum of 320 m,
+/// Steps in which one looks upwind, m, the nearest first: what is far away is felt less. Of what is farther than their sum, [`REACH_M`],
 /// fifteen heights of a tall forest, little is left.
 const STEPS_M: [f32; 9] = [8.0, 8.0, 16.0, 16.0, 32.0, 32.0, 64.0, 64.0, 80.0];
+/// Trees farther than this, m, make no difference.
+pub(super) const REACH_M: f32 = 320.0;
 /// Square metres of a hectare.
 const HECTARE_M2: f32 = 1e4;
 
@@ -33,6 +36,16 @@ pub(super) struct Stand {
     pub ground: Arc<dyn Ground>,
     /// In the order of the planter's; none for species that cannot be loaded.
     pub species: Vec<Option<StandSpecies>>,
+    /// What is other than in the plan.
+    pub balances: CellBalances,
+}
+
+impl StandSpecies {
+    /// Frontal area and height of a tree at an age, m^2 and m.
+    pub fn tree_at(&self, age_years: f32) -> (f32, f32) {
+        let size = self.age.stage(age_years).height;
+        (self.frontal_area_m2 * size * size, self.height_m * size)
+    }
 }
 
 /// The trees that are to be expected at a place.
@@ -69,11 +82,16 @@ impl Stand {
         let (mut index, mut moment) = (0.0, 0.0);
         self.planter.expected_stock(at, &self.ground, |stock| {
             let Some(Some(species)) = self.species.get(usize::from(stock.species)) else { return };
-            let size = species.age.stage(stock.age_years).height;
-            let area = stock.density_per_ha / HECTARE_M2 * species.frontal_area_m2 * size * size;
+            let (area_m2, height_m) = species.tree_at(stock.age_years);
+            let area = stock.density_per_ha / HECTARE_M2 * area_m2;
             index += area;
-            moment += area * species.height_m * size;
+            moment += area * height_m;
         });
+        if let Some(balance) = self.balances.get(&self.planter.cell_at(at.as_vec2())) {
+            let cell_m2 = self.planter.cell_m().powi(2);
+            index = balance.left * index + balance.added_m2 / cell_m2;
+            moment = balance.left * moment + balance.added_m3 / cell_m2;
+        }
         if index > 0.0 { Trees { frontal_area_index: index, height_m: moment / index } } else { Trees::default() }
     }
 
@@ -110,6 +128,7 @@ struct UpwindView {
 mod tests {
     use super::*;
     use crate::{
+        forest::stand_changes::CellBalance,
         ground::LevelGround,
         scatter::{
             ForestPlan,
@@ -125,7 +144,8 @@ mod tests {
         let area = Area { shape, density_per_ha: 100.0, stock, ..Area::default() };
         let planter = Planter::new(&ForestPlan { areas: vec![area], ..ForestPlan::default() }).expect("a valid plan");
         let species = StandSpecies { age: Age::default(), height_m: 20.0, frontal_area_m2: 100.0 };
-        Stand { planter: Arc::new(planter), ground: Arc::new(LevelGround::default()), species: vec![Some(species)] }
+        let (planter, ground) = (Arc::new(planter), Arc::new(LevelGround::default()));
+        Stand { planter, ground, species: vec![Some(species)], balances: CellBalances::default() }
     }
 
     fn canopy(x: f64, z: f64) -> Canopy {
@@ -170,6 +190,29 @@ mod tests {
             let place = first + DVec2::new((number % 4) as f64, (number / 4) as f64) * 32.0;
             assert_eq!(*canopy, wood().canopies(place, spacing_m, 1)[0], "{place}");
         }
+    }
+
+    #[test]
+    fn steps_reach_as_far_as_trees_make_a_difference() {
+        assert_eq!(STEPS_M.iter().sum::<f32>(), REACH_M);
+    }
+
+    /// Every second stem of the wood is gone: half the index. In its middle cell all are, and 20 such trees are planted there.
+    #[test]
+    fn what_is_felled_and_planted_counts() {
+        let cells = (0..7).flat_map(|z| (0..7).map(move |x| bevy::math::IVec2::new(x, z)));
+        let half = CellBalance { left: 0.5, ..CellBalance::default() };
+        let mut stand = Stand { balances: cells.map(|cell| (cell, half)).collect(), ..wood() };
+        let place = DVec2::splat(3.5 * 64.0);
+        let thinned = stand.canopies(place, 1.0, 1)[0];
+        assert!((thinned.frontal_area_index - 0.5).abs() < 0.01 && (thinned.height_m - 20.0).abs() < 0.01);
+        assert!(thinned.exposure[0] > wood().canopies(place, 1.0, 1)[0].exposure[0]);
+        let planted = CellBalance { left: 0.0, added_m2: 2000.0, added_m3: 40_000.0 };
+        stand.balances.insert(bevy::math::IVec2::splat(3), planted);
+        let replanted = stand.canopies(place, 1.0, 1)[0];
+        assert!(
+            (replanted.frontal_area_index - 2000.0 / 4096.0).abs() < 1e-3 && (replanted.height_m - 20.0).abs() < 0.01
+        );
     }
 
     #[test]

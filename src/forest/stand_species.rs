@@ -82,7 +82,8 @@ pub(super) fn prepare_stands(
         if forest.species().iter().all(is_settled) {
             let species = forest.species().iter().map(|handle| known.get(&handle.id()).copied()).collect();
             let (planter, ground) = forest.planting();
-            forest.set_stand(Stand { planter, ground, species });
+            forest.set_stand(Stand { planter, ground, species, balances: default() });
+            forest.note_changed_stand();
         }
     }
 }

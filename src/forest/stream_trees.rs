@@ -1,6 +1,9 @@
 //! Streams the trees of near cells about the viewers.
 
-use super::cells::ForestCells;
+use super::{
+    cells::ForestCells,
+    messages::{TreeEntered, TreeLeft},
+};
 use crate::{cells::ViewerPose, viewpoint::Viewpoints};
 use bevy::{ecs::system::SystemParam, prelude::*};
 
@@ -43,6 +46,8 @@ pub(super) fn stream_trees(
     drawn: DrawnTrees,
     mut places: Local<Vec<ViewerPose>>,
     mut forests: Query<(Entity, &mut ForestCells, Layers)>,
+    mut entered: MessageWriter<TreeEntered>,
+    mut left: MessageWriter<TreeLeft>,
 ) {
     viewpoints.fill(&mut places);
     for (entity, mut forest, layers) in &mut forests {
@@ -67,5 +72,6 @@ pub(super) fn stream_trees(
         near.clear(&mut commands);
         near.note_drawn(|tree| drawn.contains(tree), &mut commands);
         near.spawn(settings.trees_per_frame, species, give, &mut commands);
+        near.tell(entity, &mut entered, &mut left);
     }
 }

@@ -67,6 +67,7 @@ pub use ecs::{
 pub(crate) use frontal_area::frontal_area_m2;
 pub use generator::Growth;
 pub use leaf_season::LeafSeason;
+pub(crate) use mechanics::{Piece, tree_pieces};
 pub use model::TreeModel;
 pub use plugin::TreePlugin;
 pub use species::{Species, SpeciesError};

@@ -9,6 +9,7 @@ mod canopy;
 #[path = "../../src/dynamics/oracle/cantilever.rs"]
 #[expect(dead_code, reason = "a part of it is for the unit tests")]
 mod cantilever;
+mod change;
 #[path = "../support/chart.rs"]
 mod chart;
 mod cost;
@@ -70,6 +71,8 @@ enum Topic {
     Points,
     /// Time of a frame in forests of ten thousand to a million trees.
     Scale,
+    /// A forest of a million trees that a game changes: time and size of a change, equal forests after a walk and loading.
+    Change,
     /// Trees against the tables of the papers, their own settings, and real trees.
     Trees,
     /// Figure 9 of Setas et al.: frame rate over number of trees, with and without voxel grid and levels of detail. Takes ten
@@ -127,6 +130,7 @@ fn main() -> ExitCode {
         Topic::Terrain => terrain::run(),
         Topic::Points => points::run(),
         Topic::Scale => scale::run(),
+        Topic::Change => change::run(),
         Topic::Trees => trees::run(),
         Topic::Figure9 => figure9::run(options.frames, options.trees, &options.out.join("figure9.png")),
         Topic::Grid => grid::run(options.frames, options.trees, &options.out),

@@ -11,6 +11,7 @@ use crate::{
         cells::plant_cells,
         cull::{ForestCulling, cull_cells, measure_species},
         diagnose::ForestGizmoPlugin,
+        falling::draw_stumps,
         layers::copy_forest_layers,
         stream_trees::stream_trees,
     },
@@ -53,6 +54,7 @@ impl Plugin for ForestRenderPlugin {
         let stream = timed!(app, bake_impostor_species, stream_impostor_tiles);
         let mask = timed!(app, update_near_masks);
         app.add_systems(Update, stream.chain().after(plant_cells).run_if(can_draw))
+            .add_systems(Update, draw_stumps.after(WindwoodSystems::Stream))
             .add_systems(Update, update_material_lights::<ImpostorExtension>.run_if(resource_changed::<TreeLights>))
             .add_systems(PostUpdate, mask.before(WindwoodSystems::Upload));
     }

@@ -21,6 +21,8 @@ use crate::{
 const MOST_AREAS: usize = 10_000;
 const MOST_KEPT_OUT: usize = 100_000;
 const MOST_STOCK: usize = 64;
+/// Species of one plan: their numbers are bytes.
+pub(in crate::scatter) const MOST_SPECIES: usize = 256;
 /// Ten plants a square metre: a thicket of saplings.
 const DENSEST_PER_HA: f32 = 1e5;
 const SPARSEST_PER_HA: f32 = 1e-3;
@@ -48,11 +50,13 @@ pub struct ForestPlan {
     pub areas: Vec<Area>,
     /// Where nothing grows. At most 100,000.
     pub keep_out: Vec<KeepOut>,
+    /// Species that no area grows, but that may be planted. At most 256.
+    pub more_species: Vec<String>,
 }
 
 impl Default for ForestPlan {
     fn default() -> Self {
-        Self { seed: 0, cell_m: 64.0, areas: Vec::new(), keep_out: Vec::new() }
+        Self { seed: 0, cell_m: 64.0, areas: Vec::new(), keep_out: Vec::new(), more_species: Vec::new() }
     }
 }
 
@@ -123,6 +127,10 @@ impl ForestPlan {
         require("cell_m", self.cell_m, 8.0..=1024.0)?;
         require("areas.len()", self.areas.len(), 0..=MOST_AREAS)?;
         require("keep_out.len()", self.keep_out.len(), 0..=MOST_KEPT_OUT)?;
+        require("more_species.len()", self.more_species.len(), 0..=MOST_SPECIES)?;
+        if let Some(index) = self.more_species.iter().position(String::is_empty) {
+            return Err(SettingError::new(format!("more_species[{index}]"), "empty", "the name of a species"));
+        }
         for (index, area) in self.areas.iter().enumerate() {
             area.validate(self.cell_m).map_err(|error| error.inside(&format!("areas[{index}]")))?;
         }
@@ -240,6 +248,8 @@ mod tests {
         assert!(error(|area| area.quadrat_m = f32::NAN).starts_with("`areas[0].quadrat_m` is NaN"));
         assert!(error(|area| area.least_distance_m = 5.0).starts_with("`areas[0].least_distance_m` is 5"));
         assert!(error(|area| area.ground.steepest_deg = -1.0).starts_with("`areas[0].ground.steepest_deg` is -1"));
+        let nameless = ForestPlan { more_species: vec!["apple".into(), String::new()], ..Default::default() };
+        assert!(nameless.validate().unwrap_err().to_string().starts_with("`more_species[1]` is empty"));
     }
 
     #[test]

@@ -49,17 +49,15 @@ pub struct Planted {
 }
 
 impl Planted {
-    /// What follows from a plant's own random number. A species of age a has 1 - 0.05^(a/full-grown) of its size
-    /// (Mitscherlich's law of growth).
+    /// What follows from a plant's own random number.
     pub(super) fn grow(position: Vec3, stock: &Stock, species: u8, seed: u64) -> Self {
         let random = &mut Xoshiro256PlusPlus::seed_from_u64(seed);
         let age_years = log_normal(stock.age_years, stock.age_spread_years, random);
-        let grown = 1.0 - LEFT_TO_GROW.powf(age_years / stock.full_grown_years);
         let vigour = log_normal(1.0, stock.size_spread, random);
         Self {
             position,
             turn_rad: random.random_range(0.0..TAU),
-            plan_size: (grown * vigour).clamp(1e-3, GREATEST_SIZE),
+            plan_size: plan_size(age_years, stock.full_grown_years, vigour),
             vigour,
             age_years,
             season_days: stock.season_offset_days + stock.season_spread_days * normal(random),
@@ -67,6 +65,11 @@ impl Planted {
             species,
             seed: random.next_u32(),
         }
+    }
+
+    /// The same plant at another age, of a stock that is full-grown at that one.
+    pub(super) fn at_age(self, age_years: f32, full_grown_years: f32) -> Self {
+        Self { plan_size: plan_size(age_years, full_grown_years, self.vigour), age_years, ..self }
     }
 
     /// The plant in 16 bytes, four words for a shader, lowest bits first:
@@ -137,6 +140,12 @@ impl Stem {
     pub(crate) fn packed_size(words: [u32; 4]) -> f32 {
         (words[2] >> 16) as f32 * (GREATEST_SIZE / 65_535.0)
     }
+}
+
+/// [`Planted::plan_size`]. A species of age a has 1 - 0.05^(a/full-grown) of its size (Mitscherlich's law of growth).
+fn plan_size(age_years: f32, full_grown_years: f32, vigour: f32) -> f32 {
+    let grown = 1.0 - LEFT_TO_GROW.powf(age_years / full_grown_years);
+    (grown * vigour).clamp(1e-3, GREATEST_SIZE)
 }
 
 fn normal(random: &mut impl Rng) -> f32 {

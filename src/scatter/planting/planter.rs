@@ -11,14 +11,13 @@ use super::{
 use crate::{
     ground::Ground,
     scatter::plan::{
-        forest::ForestPlan,
+        forest::{ForestPlan, MOST_SPECIES},
         keep_out::{Blocker, KeepOut},
+        stock::Stock,
     },
     setting::{SettingError, require},
 };
 
-/// Species of one plan: their numbers are bytes.
-const MOST_SPECIES: usize = 256;
 /// Most candidates of a cell, where very many areas overlap.
 const MOST_CANDIDATES: usize = 1 << 22;
 
@@ -37,6 +36,8 @@ pub(crate) struct ExpectedStock {
 pub struct Planter {
     cell_m: f64,
     species: Vec<String>,
+    /// The first stock of each species.
+    stocks: Vec<Stock>,
     layers: Vec<Layer>,
     /// Number of the species of each stock of each layer.
     species_of_stock: Vec<Vec<u8>>,
@@ -61,24 +62,23 @@ impl Planter {
             .filter(|(area, _)| area.density_per_ha > 0.0)
             .map(|(area, number)| Layer::new(area, number, plan.seed))
             .collect::<Result<_, _>>()?;
-        let mut species: Vec<String> = Vec::new();
+        let mut stocks: Vec<Stock> = Vec::new();
         let mut species_of_stock = Vec::with_capacity(layers.len());
         for layer in &layers {
             let mut numbers = Vec::with_capacity(layer.stocks().len());
             for stock in layer.stocks() {
-                let number = species.iter().position(|name| *name == stock.species).unwrap_or_else(|| {
-                    species.push(stock.species.clone());
-                    species.len() - 1
-                });
-                require("species.len()", number + 1, 1..=MOST_SPECIES)?;
-                numbers.push(number as u8);
+                numbers.push(species_number(&mut stocks, stock)?);
             }
             species_of_stock.push(numbers);
+        }
+        for species in &plan.more_species {
+            species_number(&mut stocks, &Stock { species: species.clone(), ..Stock::default() })?;
         }
         let blockers: Vec<Blocker> = plan.keep_out.iter().flat_map(KeepOut::blockers).collect();
         Ok(Self {
             cell_m: f64::from(plan.cell_m),
-            species,
+            species: stocks.iter().map(|stock| stock.species.clone()).collect(),
+            stocks,
             layers_by_place: BoxIndex::new(layers.iter().map(Layer::bounds)),
             blockers_by_place: BoxIndex::new(blockers.iter().map(Blocker::bounds)),
             greatest_distance_m: layers.iter().map(Layer::least_distance_m).fold(0.0, f64::max),
@@ -175,6 +175,21 @@ impl Planter {
         planted.extend(candidates.iter().filter(|one| one.in_cell && one.stays).map(|one| self.grow(one)));
     }
 
+    /// A single plant at a place: its size, season and tint follow from `seed`, in the manner of the plan's first stock of its species.
+    /// None of a species that the plan does not have.
+    pub(crate) fn plant_one(&self, position: Vec3, species: u8, age_years: f32, seed: u64) -> Option<Planted> {
+        let stock = self.stocks.get(usize::from(species))?;
+        let stock = Stock { age_years, age_spread_years: 0.0, ..stock.clone() };
+        Some(Planted::grow(position, &stock, species, seed))
+    }
+
+    /// A plant as it would be at another age, and of another species, if the plan has that. Its size in stores is that of the plan's first
+    /// stock of the species.
+    pub(crate) fn altered(&self, plant: Planted, species: u8, age_years: f32) -> Planted {
+        let Some(stock) = self.stocks.get(usize::from(species)) else { return plant };
+        Planted { species, ..plant.at_age(age_years, stock.full_grown_years) }
+    }
+
     fn grow(&self, candidate: &Candidate) -> Planted {
         let layer = self.layers.partition_point(|layer| layer.number() < candidate.area);
         let place = candidate.at.as_vec2();
@@ -185,6 +200,16 @@ impl Planter {
             candidate.seed,
         )
     }
+}
+
+/// The number of a stock's species, which is added where it is new.
+fn species_number(stocks: &mut Vec<Stock>, stock: &Stock) -> Result<u8, SettingError> {
+    let number = stocks.iter().position(|other| other.species == stock.species).unwrap_or(stocks.len());
+    require("species.len()", number + 1, 1..=MOST_SPECIES)?;
+    if number == stocks.len() {
+        stocks.push(stock.clone());
+    }
+    Ok(number as u8)
 }
 
 #[cfg(test)]

@@ -85,15 +85,9 @@ pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> LoadedTree {
         let Some(parent) = root.parent else { return };
         (carrier, attach) = (parent, root.attach);
     };
-    for (index, beam) in (0u32..).zip(&skeleton.beams) {
-        for (s, share) in BEAM_LUMPS {
-            tree.first_slots.push(tree.branch_of_slot.len() as u32);
-            put_on(&mut tree, index, s, wood_piece(species, beam, s, share));
-        }
-    }
-    for cluster in &skeleton.clusters {
+    for (carrier, attach, piece) in pieces(species, skeleton) {
         tree.first_slots.push(tree.branch_of_slot.len() as u32);
-        put_on(&mut tree, cluster.beam, cluster.at, leaf_piece(species, cluster));
+        put_on(&mut tree, carrier, attach, piece);
     }
     tree.first_slots.push(tree.branch_of_slot.len() as u32);
     for branch in &mut tree.branches {
@@ -115,13 +109,29 @@ const BEAM_LUMPS: [(f32, f64); 6] = {
     ]
 };
 
-/// A piece of the tree with its mass, kg, and its drag for one m^2/s^2 of wind pressure, kg/m.
+/// A piece of a tree.
 #[derive(Clone, Copy)]
-struct Piece {
-    at: Vec3,
-    mass_kg: f64,
-    drag_kg_m: f64,
-    is_leaf: bool,
+pub(crate) struct Piece {
+    /// Where it is, in the tree's coordinates, m.
+    pub at: Vec3,
+    pub mass_kg: f64,
+    /// Drag for one m^2/s^2 of wind pressure |u|u, kg/m.
+    pub drag_kg_m: f64,
+    pub is_leaf: bool,
+}
+
+/// All pieces of a tree: wood, then leaves; each with the beam that carries it and where on that.
+fn pieces(species: &Species, skeleton: &Skeleton) -> impl Iterator<Item = (u32, f32, Piece)> {
+    let wood = (0u32..).zip(&skeleton.beams).flat_map(move |(index, beam)| {
+        BEAM_LUMPS.into_iter().map(move |(s, share)| (index, s, wood_piece(species, beam, s, share)))
+    });
+    let leaf = move |cluster: &LeafCluster| (cluster.beam, cluster.at, leaf_piece(species, cluster));
+    wood.chain(skeleton.clusters.iter().map(leaf))
+}
+
+/// The masses and drags that a tree is made of.
+pub(crate) fn tree_pieces(species: &Species, skeleton: &Skeleton) -> impl Iterator<Item = Piece> {
+    pieces(species, skeleton).map(|(.., piece)| piece)
 }
 
 fn wood_piece(species: &Species, beam: &SkeletonBeam, s: f32, share: f64) -> Piece {

@@ -41,6 +41,8 @@ mod branches;
 mod composite;
 mod response;
 
+pub(crate) use branches::{Piece, tree_pieces};
+
 use self::{
     branches::{LoadedBranch, LoadedTree, branches},
     composite::{CompositeSway, composite_sways},

@@ -1,0 +1,91 @@
+//! Changes among near trees: trees that are felled or others than they were, and what is told of all that come and go.
+
+use super::{
+    messages::{TreeEntered, TreeLeft},
+    near::{CellTask, NearTrees, Planting},
+    near_cell::{NearEvent, NearTree},
+    planted_tile::PlantedTile,
+    stem_id::StemId,
+};
+use crate::{scatter::Planted, tree::Species};
+use bevy::prelude::*;
+use std::sync::Arc;
+
+impl NearTrees {
+    /// Whether a cell stands here after the plan of now.
+    pub fn has(&self, cell: IVec2) -> bool {
+        self.cells.get(&cell).is_some_and(|there| !there.is_outdated)
+    }
+
+    /// Whether any of some cells is nearer to a cell that stands here than this, m.
+    pub fn is_any_near(&self, cells: &[IVec2], within_m: f32) -> bool {
+        let corners = self.cells.keys().map(|cell| [*cell; 2]);
+        let Some([min, max]) = corners.reduce(|[min, max], [cell, _]| [min.min(cell), max.max(cell)]) else {
+            return false;
+        };
+        let reach = (within_m / self.cell_m).ceil() as i32;
+        cells.iter().any(|cell| cell.cmpge(min - reach).all() && cell.cmple(max + reach).all())
+    }
+
+    /// Takes a tree that was felled out of its cell.
+    pub fn fell(&mut self, cell: IVec2, id: StemId) -> Option<NearTree> {
+        let there = self.cells.get_mut(&cell)?;
+        there.planted.retain(|(planted, _)| *planted != id);
+        let place = there.spawned.iter().position(|tree| tree.id == id)?;
+        Some(there.spawned.swap_remove(place))
+    }
+
+    /// Makes a cell that stands here what is planted there now. Trees that are the same stay.
+    pub fn renew(&mut self, cell: IVec2, planted: Vec<(StemId, Planted)>, species: &[Handle<Species>]) {
+        let Some(mut before) = self.cells.remove(&cell) else { return };
+        let was_drawn = before.is_drawn;
+        let canopies = before.canopies.take();
+        let mut there = before.planted_anew(planted, species);
+        // All of its trees but those that were changed are still drawn: no impostors have to stand for them.
+        there.is_drawn |= was_drawn;
+        there.canopies = canopies;
+        if !there.planted.is_empty() && !self.unspawned.contains(&cell) {
+            self.unspawned.push(cell);
+        }
+        self.cells.insert(cell, there);
+        if !self.without_canopies.contains(&cell) {
+            self.without_canopies.push(cell);
+        }
+        self.changes += 1;
+        self.drawn_changes += 1;
+    }
+
+    /// Takes what is known of a tile for out of date: a cell of it that is being planted alone is planted again.
+    pub fn replant_awaited(&mut self, tile: IVec2, cell: IVec2, plant: impl Fn(IVec2) -> Option<CellTask>) {
+        self.tiles.remove(&tile);
+        let alone =
+            self.planting.iter_mut().find(|(other, source)| *other == cell && matches!(source, Planting::Alone(_)));
+        if let Some((_, source)) = alone {
+            *source = plant(cell).map_or(Planting::Tile, Planting::Alone);
+        }
+    }
+
+    /// Takes cells of a tile that was planted again.
+    pub fn renew_cells(&mut self, cells: &[IVec2], tile: &Arc<PlantedTile>, species: &[Handle<Species>]) {
+        for cell in cells.iter().filter(|cell| self.has(**cell)).copied().collect::<Vec<_>>() {
+            self.renew(cell, tile.stems(cell), species);
+        }
+    }
+
+    /// Tells of trees that have come and gone.
+    pub fn tell(
+        &mut self,
+        forest: Entity,
+        entered: &mut MessageWriter<TreeEntered>,
+        left: &mut MessageWriter<TreeLeft>,
+    ) {
+        for event in self.events.drain(..) {
+            let (NearEvent::Entered(tree) | NearEvent::Left(tree)) = &event;
+            let &NearTree { id, plant: Planted { position: place, .. }, species, entity: tree, .. } = tree;
+            match event {
+                NearEvent::Entered(_) => drop(entered.write(TreeEntered { forest, tree, id, place, species })),
+                NearEvent::Left(_) => drop(left.write(TreeLeft { forest, tree, id, place, species })),
+            }
+        }
+    }
+}
