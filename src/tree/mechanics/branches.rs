@@ -1,5 +1,8 @@
 //! Cuts a skeleton into branches, each with the lumps of mass and drag that it carries.
 
+use super::{hinges::{FOR_STATICS, Hinge, HingeCount, hinges},
+    resonance::FOR_SWAY,
+};
 use crate::{
     constants::AIR_DENSITY_KG_M3,
     tree::{
@@ -7,7 +10,7 @@ use crate::{
         species::Species,
     },
 };
-use bevy::math::Vec3;
+use bevy::math::{DVec3, Vec3};
 use std::f64::consts::PI;
 
 /// Drag coefficient of a round branch across the flow below the drag crisis (Simiu & Scanlan 1978).
@@ -27,6 +30,8 @@ pub(super) struct Lump {
     pub at: Vec3,
     /// Whether it is of leaves, which may be shed.
     pub is_leaf: bool,
+    /// Whether the branch bears it itself, and not a branch that it carries.
+    pub is_own: bool,
     /// Its number among all lumps of the tree: those of a piece follow one another, from the branch that it is of to the stem.
     pub slot: u32,
 }
@@ -35,8 +40,28 @@ pub(super) struct Lump {
 pub(super) struct LoadedBranch {
     pub beams: Vec<u32>,
     pub lumps: Vec<Lump>,
+    /// Many hinges for its bend, and few for its sway.
+    pub hinges: Vec<Hinge>,
+    pub swaying_hinges: Vec<Hinge>,
     /// From its root on, at rest.
     pub direction: Vec3,
+    /// Its root and its tip at rest, m.
+    pub base: DVec3,
+    pub tip: DVec3,
+    /// Along its beams, m.
+    pub length_m: f64,
+    /// Whether it carries other branches.
+    pub bears: bool,
+    /// What bears it; nothing but the ground a stem.
+    pub carrier: Option<Carrier>,
+}
+
+/// The branch that bears another, and where on it.
+#[derive(Clone, Copy)]
+pub(super) struct Carrier {
+    pub branch: usize,
+    /// Distance from its root along it, m.
+    pub attach_m: f64,
 }
 
 /// A tree as branches, and how its pieces hang on them.
@@ -62,16 +87,35 @@ pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> LoadedTree {
                 (branch, before_m + f64::from(skeleton.beams[parent as usize].length_m))
             }
             None => {
-                branches.push(LoadedBranch { beams: Vec::new(), lumps: Vec::new(), direction: beam.direction });
+                let carrier = beam.parent.map(|parent| {
+                    let (branch, before_m) = places[parent as usize];
+                    let attach_m = before_m + f64::from(skeleton.beams[parent as usize].length_m * beam.attach);
+                    Carrier { branch, attach_m }
+                });
+                branches.push(LoadedBranch::growing(beam, carrier));
                 (branches.len() - 1, 0.0)
             }
         };
-        branches[place.0].beams.push(index);
+        branches[place.0].extend(index, beam);
         places.push(place);
     }
+    for index in 0..branches.len() {
+        if let Some(carrier) = branches[index].carrier {
+            branches[carrier.branch].bears = true;
+        }
+    }
+    for branch in &mut branches {
+        let hinges = |count: HingeCount| {
+            let count = if branch.bears { count.bearing } else { count.terminal };
+            hinges(species, skeleton, &branch.beams, count)
+        };
+        (branch.hinges, branch.swaying_hinges) = (hinges(FOR_STATICS), hinges(FOR_SWAY));
+    }
     let mut tree = LoadedTree { branches, branch_of_slot: Vec::new(), first_slots: Vec::new() };
-    let put_on = |tree: &mut LoadedTree, mut carrier: u32, mut attach: f32, piece: Piece| loop {
+    let put_on = |tree: &mut LoadedTree, mut carrier: u32, mut attach: f32, piece: Piece| {
         let Piece { at, mass_kg, drag_kg_m, is_leaf } = piece;
+        let mut is_own = true;
+        loop {
         let beam = &skeleton.beams[carrier as usize];
         let arm = at - (beam.base + beam.direction * beam.length_m * attach);
         let (branch, before_m) = places[carrier as usize];
@@ -80,10 +124,12 @@ pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> LoadedTree {
         let beside_m = f64::from(arm.reject_from_normalized(beam.direction).length());
         let slot = tree.branch_of_slot.len() as u32;
         tree.branch_of_slot.push(branch as u32);
-        tree.branches[branch].lumps.push(Lump { attach_m, arm_m, beside_m, mass_kg, drag_kg_m, at, is_leaf, slot });
+        tree.branches[branch].lumps.push(Lump { attach_m, arm_m, beside_m, mass_kg, drag_kg_m, at, is_leaf, is_own, slot });
+        is_own = false;
         let root = &skeleton.beams[tree.branches[branch].beams[0] as usize];
         let Some(parent) = root.parent else { return };
         (carrier, attach) = (parent, root.attach);
+        }
     };
     for (index, beam) in (0u32..).zip(&skeleton.beams) {
         for (s, share) in BEAM_LUMPS {
@@ -100,6 +146,37 @@ pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> LoadedTree {
         branch.lumps.sort_by(|a, b| a.attach_m.total_cmp(&b.attach_m));
     }
     tree
+}
+
+impl LoadedBranch {
+    /// A branch that has no beam yet.
+    fn growing(first: &SkeletonBeam, carrier: Option<Carrier>) -> Self {
+        let base = first.base.as_dvec3();
+        Self {
+            beams: Vec::new(),
+            lumps: Vec::new(),
+            hinges: Vec::new(),
+            swaying_hinges: Vec::new(),
+            direction: first.direction,
+            base,
+            tip: base,
+            length_m: 0.0,
+            bears: false,
+            carrier,
+        }
+    }
+
+    fn extend(&mut self, index: u32, beam: &SkeletonBeam) {
+        self.beams.push(index);
+        self.tip = (beam.base + beam.direction * beam.length_m).as_dvec3();
+        self.length_m += f64::from(beam.length_m);
+    }
+
+    /// The same branch without its leaves.
+    pub fn without_leaves(&self) -> Self {
+        let lumps = self.lumps.iter().filter(|lump| !lump.is_leaf).copied().collect();
+        Self { beams: self.beams.clone(), lumps, hinges: self.hinges.clone(), swaying_hinges: self.swaying_hinges.clone(), ..*self }
+    }
 }
 
 /// A beam's own wood as lumps: place on the beam, and share of its length.

@@ -39,7 +39,11 @@
 
 mod branches;
 mod composite;
+mod four;
+mod hinges;
+mod resonance;
 mod response;
+mod statics;
 
 use self::{
     branches::{LoadedBranch, LoadedTree, branches},
@@ -66,12 +70,12 @@ pub(super) fn beam_dynamics(species: &Species, skeleton: &Skeleton) -> Vec<BeamD
     let tree = branches(species, skeleton);
     let has_leaves = !skeleton.clusters.is_empty();
     let exponents = [species.foliage.drag_exponent, species.wood.drag_exponent];
-    let in_leaf = TreeResponse::new(&tree, &tree.branches, species, skeleton);
+    let in_leaf = TreeResponse::new(&tree, &tree.branches, skeleton);
     in_leaf.write(&tree, exponents[usize::from(!has_leaves)], |beam, sway| rows[beam].in_leaf = sway);
     tree.branches.iter().for_each(|branch| share_angle_limit(branch, &mut rows));
     if has_leaves && !species.phenology.evergreen {
         let branches: Vec<LoadedBranch> = tree.branches.iter().map(LoadedBranch::without_leaves).collect();
-        let bare = TreeResponse::new(&tree, &branches, species, skeleton);
+        let bare = TreeResponse::new(&tree, &branches, skeleton);
         bare.write(&tree, exponents[1], |beam, sway| rows[beam].bare = sway);
     } else {
         rows.iter_mut().for_each(|row| row.bare = row.in_leaf);
@@ -86,8 +90,8 @@ struct TreeResponse {
 }
 
 impl TreeResponse {
-    fn new(tree: &LoadedTree, branches: &[LoadedBranch], species: &Species, skeleton: &Skeleton) -> Self {
-        let responses: Vec<BranchResponse> = branches.iter().map(|branch| branch.response(species, skeleton)).collect();
+    fn new(tree: &LoadedTree, branches: &[LoadedBranch], skeleton: &Skeleton) -> Self {
+        let responses: Vec<BranchResponse> = branches.iter().map(|branch| branch.response(skeleton)).collect();
         let sways = composite_sways(tree, branches, &responses);
         Self { responses, sways }
     }
@@ -140,7 +144,7 @@ pub struct TreeSway {
 #[must_use]
 pub fn tree_sway(species: &Species, skeleton: &Skeleton) -> TreeSway {
     let tree = branches(species, skeleton);
-    let in_leaf = TreeResponse::new(&tree, &tree.branches, species, skeleton);
+    let in_leaf = TreeResponse::new(&tree, &tree.branches, skeleton);
     let (frequency_hz, dbh_m) = match (tree.branches.first(), in_leaf.sways.first()) {
         (Some(trunk), Some(sway)) => (sway.frequency_hz as f32, 2.0 * trunk.radius_m(skeleton, BREAST_HEIGHT_M)),
         _ => (0.0, 0.0),

@@ -1,0 +1,120 @@
+//! Complex numbers, vectors and matrices at four frequencies at once.
+
+use bevy::math::{Vec3, Vec4};
+use std::ops::{Add, AddAssign, Mul, Sub, SubAssign};
+
+/// A complex number for each of four frequencies.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Four {
+    pub re: Vec4,
+    pub im: Vec4,
+}
+
+/// A vector of such numbers.
+pub(super) type Vector = [Four; 3];
+/// A matrix of such numbers, by rows.
+pub(super) type Matrix = [Vector; 3];
+
+impl Four {
+    pub const ZERO: Self = Self { re: Vec4::ZERO, im: Vec4::ZERO };
+
+    pub fn real(value: f32) -> Self {
+        Self { re: Vec4::splat(value), im: Vec4::ZERO }
+    }
+
+    fn recip(self) -> Self {
+        // Squares of determinants would leave the range of f32.
+        let scale = self.re.abs().max(self.im.abs()).recip();
+        let (re, im) = (self.re * scale, self.im * scale);
+        let norm = scale / (re * re + im * im);
+        Self { re: re * norm, im: -im * norm }
+    }
+}
+
+impl Add for Four {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { re: self.re + other.re, im: self.im + other.im }
+    }
+}
+
+impl Sub for Four {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self { re: self.re - other.re, im: self.im - other.im }
+    }
+}
+
+impl Mul for Four {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        Self { re: self.re * other.re - self.im * other.im, im: self.re * other.im + self.im * other.re }
+    }
+}
+
+impl Mul<f32> for Four {
+    type Output = Self;
+    fn mul(self, factor: f32) -> Self {
+        Self { re: self.re * factor, im: self.im * factor }
+    }
+}
+
+impl AddAssign for Four {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for Four {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+pub(super) fn dot(a: &Vector, b: &Vector) -> Four {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// `a x b`.
+pub(super) fn cross(a: Vec3, b: &Vector) -> Vector {
+    [b[2] * a.y - b[1] * a.z, b[0] * a.z - b[2] * a.x, b[1] * a.x - b[0] * a.y]
+}
+
+pub(super) fn transposed(matrix: &Matrix) -> Matrix {
+    std::array::from_fn(|row| std::array::from_fn(|column| matrix[column][row]))
+}
+
+pub(super) fn times(matrix: &Matrix, vector: &Vector) -> Vector {
+    std::array::from_fn(|row| dot(&matrix[row], vector))
+}
+
+/// `a b^T`.
+pub(super) fn times_transposed(a: &Matrix, b: &Matrix) -> Matrix {
+    std::array::from_fn(|row| std::array::from_fn(|column| dot(&a[row], &b[column])))
+}
+
+/// `a b^T` where that is symmetric.
+pub(super) fn symmetric_times_transposed(a: &Matrix, b: &Matrix) -> Matrix {
+    let [xx, xy, xz] = std::array::from_fn(|column| dot(&a[0], &b[column]));
+    let [yy, yz] = [1, 2].map(|column| dot(&a[1], &b[column]));
+    let zz = dot(&a[2], &b[2]);
+    [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+}
+
+/// The inverse of a symmetric matrix.
+pub(super) fn inverse(m: &Matrix) -> Matrix {
+    let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = *m;
+    let (a, b, c) = (yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
+    let (d, e, f) = (xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy);
+    let scale = (xx * a + xy * b + xz * c).recip();
+    let [a, b, c, d, e, f] = [a, b, c, d, e, f].map(|minor| minor * scale);
+    [[a, b, c], [b, d, e], [c, e, f]]
+}
+
+pub(super) fn add<const N: usize>(a: &mut [Four; N], b: &[Four; N]) {
+    a.iter_mut().zip(b).for_each(|(a, b)| *a += *b);
+}
+
+pub(super) fn subtract<const N: usize>(a: &mut [Four; N], b: &[Four; N]) {
+    a.iter_mut().zip(b).for_each(|(a, b)| *a -= *b);
+}
