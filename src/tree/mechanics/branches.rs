@@ -1,8 +1,6 @@
 //! Cuts a skeleton into branches, each with the lumps of mass and drag that it carries.
 
-use super::{hinges::{FOR_STATICS, Hinge, HingeCount, hinges},
-    resonance::FOR_SWAY,
-};
+use super::hinges::Hinge;
 use crate::{
     constants::AIR_DENSITY_KG_M3,
     tree::{
@@ -40,7 +38,7 @@ pub(super) struct Lump {
 pub(super) struct LoadedBranch {
     pub beams: Vec<u32>,
     pub lumps: Vec<Lump>,
-    /// Many hinges for its bend, and few for its sway.
+    /// Many hinges for its bend; few for its sway, and none if it bears leaves alone.
     pub hinges: Vec<Hinge>,
     pub swaying_hinges: Vec<Hinge>,
     /// From its root on, at rest.
@@ -104,13 +102,6 @@ pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> LoadedTree {
             branches[carrier.branch].bears = true;
         }
     }
-    for branch in &mut branches {
-        let hinges = |count: HingeCount| {
-            let count = if branch.bears { count.bearing } else { count.terminal };
-            hinges(species, skeleton, &branch.beams, count)
-        };
-        (branch.hinges, branch.swaying_hinges) = (hinges(FOR_STATICS), hinges(FOR_SWAY));
-    }
     let mut tree = LoadedTree { branches, branch_of_slot: Vec::new(), first_slots: Vec::new() };
     let put_on = |tree: &mut LoadedTree, mut carrier: u32, mut attach: f32, piece: Piece| {
         let Piece { at, mass_kg, drag_kg_m, is_leaf } = piece;
@@ -144,6 +135,7 @@ pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> LoadedTree {
     tree.first_slots.push(tree.branch_of_slot.len() as u32);
     for branch in &mut tree.branches {
         branch.lumps.sort_by(|a, b| a.attach_m.total_cmp(&b.attach_m));
+        branch.hinge(species, skeleton);
     }
     tree
 }

@@ -45,18 +45,23 @@ pub(super) fn composite_sways(
     branches: &[LoadedBranch],
     responses: &[BranchResponse],
 ) -> Vec<CompositeSway> {
+    let t0 = std::time::Instant::now();
+    let found = resonances_hz(branches, responses);
+    if std::env::var("TIME").is_ok() { eprintln!("resonances {:?}", t0.elapsed()); }
+    let t0 = std::time::Instant::now();
     let slots = slots(tree, branches, responses);
-    let frequencies_hz: Vec<f64> = resonances_hz(branches)
+    let frequencies_hz: Vec<f64> = found
         .into_iter()
         .zip(branches.iter().zip(responses))
         .map(|(found_hz, (branch, response))| {
-            found_hz.unwrap_or_else(|| alone_hz(branch, &response.sway))
+            found_hz.unwrap_or_else(|| response.sway.rigid_hz(branch))
         })
         .collect();
     let bends = |branch: usize, carrier: usize| {
         branch == carrier || frequencies_hz[branch] >= frequencies_hz[carrier]
     };
     let sums = sums(tree, branches, &slots, bends);
+    if std::env::var("TIME").is_ok() { eprintln!("composite {:?}", t0.elapsed()); }
     sums.iter()
         .zip(responses)
         .zip(&frequencies_hz)
@@ -65,14 +70,6 @@ pub(super) fn composite_sways(
             drag_damping_s_m: sums.drag / (TAU * frequency_hz * (sums.inertia + 2.0 * response.sway.turning)),
         })
         .collect()
-}
-
-/// Natural frequency of a branch that carries rigid arms, Hz.
-fn alone_hz(branch: &LoadedBranch, sway: &BranchSway) -> f64 {
-    let sum = |of: fn(f64) -> f64| -> f64 {
-        branch.lumps.iter().zip(&sway.deflections_m).map(|(lump, deflection_m)| lump.mass_kg * of(*deflection_m)).sum()
-    };
-    (sum(|y| y) / (sum(|y| y * y) + sway.turning)).sqrt() / TAU
 }
 
 /// The sums of every branch, over what it carries. `bends` tells whether a branch (first) bends while another sways.

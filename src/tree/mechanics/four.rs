@@ -33,6 +33,7 @@ impl Four {
 
 impl Add for Four {
     type Output = Self;
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self { re: self.re + other.re, im: self.im + other.im }
     }
@@ -40,6 +41,7 @@ impl Add for Four {
 
 impl Sub for Four {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Self { re: self.re - other.re, im: self.im - other.im }
     }
@@ -47,6 +49,7 @@ impl Sub for Four {
 
 impl Mul for Four {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         Self { re: self.re * other.re - self.im * other.im, im: self.re * other.im + self.im * other.re }
     }
@@ -54,28 +57,33 @@ impl Mul for Four {
 
 impl Mul<f32> for Four {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, factor: f32) -> Self {
         Self { re: self.re * factor, im: self.im * factor }
     }
 }
 
 impl AddAssign for Four {
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl SubAssign for Four {
+    #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
+#[inline(always)]
 pub(super) fn dot(a: &Vector, b: &Vector) -> Four {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// `a x b`.
+#[inline(always)]
 pub(super) fn cross(a: Vec3, b: &Vector) -> Vector {
     [b[2] * a.y - b[1] * a.z, b[0] * a.z - b[2] * a.x, b[1] * a.x - b[0] * a.y]
 }
@@ -84,6 +92,7 @@ pub(super) fn transposed(matrix: &Matrix) -> Matrix {
     std::array::from_fn(|row| std::array::from_fn(|column| matrix[column][row]))
 }
 
+#[inline(always)]
 pub(super) fn times(matrix: &Matrix, vector: &Vector) -> Vector {
     std::array::from_fn(|row| dot(&matrix[row], vector))
 }
@@ -117,4 +126,8 @@ pub(super) fn add<const N: usize>(a: &mut [Four; N], b: &[Four; N]) {
 
 pub(super) fn subtract<const N: usize>(a: &mut [Four; N], b: &[Four; N]) {
     a.iter_mut().zip(b).for_each(|(a, b)| *a -= *b);
+}
+
+pub(super) fn subtracted(a: &Vector, b: &Vector) -> Vector {
+    std::array::from_fn(|n| a[n] - b[n])
 }

@@ -9,6 +9,7 @@
 //! for 1 N m and stands where that has its centre, `(q + 2) / (2 (1 + q + q^2))` of the way: so it turns the end of the length
 //! and moves it exactly as a taper does under a constant moment. It twists by `E / 2 G` as much. A stem stands on one more hinge, that of its roots.
 
+use super::branches::LoadedBranch;
 use crate::tree::{skeleton::Skeleton, species::Species};
 use bevy::math::{DMat3, DVec3};
 use std::f64::consts::PI;
@@ -27,17 +28,13 @@ const SOIL_SHEAR_PA: f64 = 1.0e6;
 const SOIL_POISSON: f64 = 0.4;
 /// Thinner wood counts as so thick, m: nothing that is drawn is thinner.
 const LEAST_RADIUS_M: f64 = 1e-4;
-/// Hinges of a beam.
-#[derive(Clone, Copy)]
-pub(super) struct HingeCount {
-    /// Of a branch that bears others.
-    pub bearing: usize,
-    /// Of one that bears leaves alone.
-    pub terminal: usize,
-}
-
-/// The midpoint rule is exact to 1% for the cones in which stems end.
-pub(super) const FOR_STATICS: HingeCount = HingeCount { bearing: 12, terminal: 4 };
+/// Hinges of a beam of a branch that bears others, for its bend: within 1% for the cones in which stems end.
+const BENDING_HINGES: usize = 12;
+/// The same for its sway, of the whole branch, and of each beam at least.
+const SWAYING_HINGES: usize = 6;
+const LEAST_SWAYING_HINGES: usize = 2;
+/// Hinges of a beam of a branch that bears leaves alone.
+const TWIG_HINGES: usize = 4;
 
 /// A hinge, and the rigid piece beyond it.
 #[derive(Clone, Copy, Debug)]
@@ -75,8 +72,21 @@ pub(super) fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-/// The hinges of a branch of these beams, root first.
-pub(super) fn hinges(species: &Species, skeleton: &Skeleton, beams: &[u32], count: usize) -> Vec<Hinge> {
+impl LoadedBranch {
+    /// Gives it its hinges, for which its lumps must be there.
+    pub fn hinge(&mut self, species: &Species, skeleton: &Skeleton) {
+        let counted = |count: usize| hinges(species, skeleton, &self.beams, count);
+        if self.bears {
+            let swaying = SWAYING_HINGES.div_ceil(self.beams.len()).max(LEAST_SWAYING_HINGES);
+            (self.hinges, self.swaying_hinges) = (counted(BENDING_HINGES), counted(swaying));
+        } else {
+            self.hinges = counted(TWIG_HINGES);
+        }
+    }
+}
+
+/// The hinges of a branch of these beams, root first, so many a beam.
+fn hinges(species: &Species, skeleton: &Skeleton, beams: &[u32], count: usize) -> Vec<Hinge> {
     let young_pa = f64::from(species.wood.young_modulus_pa);
     let mut hinges = Vec::with_capacity(beams.len() * count + 1);
     let root = &skeleton.beams[beams[0] as usize];

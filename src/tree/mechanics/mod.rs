@@ -67,7 +67,9 @@ const BREAST_HEIGHT_M: f32 = 1.3;
 /// The beams of `skeleton` as rows for posing, in the same order.
 pub(super) fn beam_dynamics(species: &Species, skeleton: &Skeleton) -> Vec<BeamDynamics> {
     let mut rows: Vec<BeamDynamics> = skeleton.beams.iter().map(at_rest).collect();
+    let t0 = std::time::Instant::now();
     let tree = branches(species, skeleton);
+    if std::env::var("TIME").is_ok() { eprintln!("branches {:?}", t0.elapsed()); }
     let has_leaves = !skeleton.clusters.is_empty();
     let exponents = [species.foliage.drag_exponent, species.wood.drag_exponent];
     let in_leaf = TreeResponse::new(&tree, &tree.branches, skeleton);
@@ -91,7 +93,9 @@ struct TreeResponse {
 
 impl TreeResponse {
     fn new(tree: &LoadedTree, branches: &[LoadedBranch], skeleton: &Skeleton) -> Self {
+        let t0 = std::time::Instant::now();
         let responses: Vec<BranchResponse> = branches.iter().map(|branch| branch.response(skeleton)).collect();
+        if std::env::var("TIME").is_ok() { eprintln!("responses {:?}", t0.elapsed()); }
         let sways = composite_sways(tree, branches, &responses);
         Self { responses, sways }
     }

@@ -28,10 +28,11 @@
 use super::{
     branches::{LoadedBranch, Lump},
     four::{
-        Four, Matrix, Vector, add, cross, dot, inverse, subtract, symmetric_times_transposed, times,
+        Four, Matrix, Vector, add, cross, dot, inverse, subtract, subtracted, symmetric_times_transposed, times,
         times_transposed, transposed,
     },
-    hinges::{Hinge, HingeCount},
+    hinges::Hinge,
+    response::BranchResponse,
     statics::{Beyond, PieceWeight, winds},
 };
 use bevy::math::{DVec3, Mat3, Vec3, Vec4};
@@ -39,51 +40,62 @@ use std::f64::consts::TAU;
 
 /// Damping ratio of the peaks, wood and leaves in a wind: what is nearer together than some 15% is one peak.
 const DAMPING_RATIO: f32 = 0.1;
-/// The frequencies that are tried: the lowest, Hz, the natural logarithm of the ratio of neighbours, and how many fours of them.
-const LOWEST_HZ: f64 = 0.1;
-const STEP: f64 = 0.16;
-const FOURS: usize = 7;
-/// Hinges that do for its first modes.
-pub(super) const FOR_SWAY: HingeCount = HingeCount { bearing: 4, terminal: 2 };
+/// The frequencies that are tried: the lowest by that of the slowest branch, the natural logarithm of the ratio of neighbours, and
+/// how many fours of them.
+const LOWEST_SHARE: f64 = 0.5;
+const STEP: f64 = 0.18;
+const FOURS: usize = 5;
 /// Where on a branch its motion is taken, as a share of its length.
 const SENSOR: f64 = 2.0 / 3.0;
 
 /// The natural frequency of each branch, Hz; none where no peak is within the frequencies that are tried.
-pub(super) fn resonances_hz(branches: &[LoadedBranch]) -> Vec<Option<f64>> {
-    let bodies = Bodies::new(branches);
+pub(super) fn resonances_hz(branches: &[LoadedBranch], responses: &[BranchResponse]) -> Vec<Option<f64>> {
+    let bodies = Bodies::new(branches, responses);
+    let lowest_hz = lowest_hz(branches, responses);
     let mut lags: Vec<[f32; 4 * FOURS]> = vec![[0.0; 4 * FOURS]; branches.len()];
     let mut articulated = vec![Articulated::default(); branches.len()];
     for four in 0..FOURS {
-        let z = stiffness_ratio(four);
-        for branch in (0..branches.len()).rev() {
-            let (body, answer) = bodies.branch(branch, z, &articulated);
-            articulated[branch] = body;
-            // Hinges of the stiffness K (1 + 2 i zeta) in place of K.
-            let lag = answer.re * (2.0 * DAMPING_RATIO) - answer.im;
-            lags[branch][4 * four..4 * four + 4].copy_from_slice(&lag.to_array());
+        let z = stiffness_ratio(lowest_hz, four);
+        for (index, branch) in branches.iter().enumerate().rev() {
+            if branch.bears {
+                let answer = bodies.answer(index, z, &articulated);
+                // Hinges of the stiffness K (1 + 2 i zeta) in place of K.
+                let lag = answer.re * (2.0 * DAMPING_RATIO) - answer.im;
+                lags[index][4 * four..4 * four + 4].copy_from_slice(&lag.to_array());
+            }
+            if branch.carrier.is_some() {
+                articulated[index] = bodies.carried(index, z, &articulated);
+            }
         }
     }
-    lags.iter().map(|lags| peak_hz(lags)).collect()
+    lags.iter().map(|lags| Some(lowest_hz * peak(lags)?)).collect()
 }
 
 /// `z` at four frequencies.
-fn stiffness_ratio(four: usize) -> Four {
-    let square = Vec4::from_array(std::array::from_fn(|lane| (TAU * frequency_hz((4 * four + lane) as f64)).powi(2) as f32));
+fn stiffness_ratio(lowest_hz: f64, four: usize) -> Four {
+    let square = Vec4::from_array(std::array::from_fn(|lane| (TAU * lowest_hz * ratio((4 * four + lane) as f64)).powi(2) as f32));
     let norm = 1.0 + 4.0 * DAMPING_RATIO * DAMPING_RATIO;
     Four { re: square / norm, im: square * (-2.0 * DAMPING_RATIO / norm) }
 }
 
-fn frequency_hz(index: f64) -> f64 {
-    LOWEST_HZ * (STEP * index).exp()
+fn ratio(index: f64) -> f64 {
+    (STEP * index).exp()
+}
+
+/// Where to begin: well below the slowest branch that bears others, were these rigid.
+fn lowest_hz(branches: &[LoadedBranch], responses: &[BranchResponse]) -> f64 {
+    let bearing = branches.iter().zip(responses).filter(|(branch, _)| branch.bears);
+    let slowest_hz = bearing.map(|(branch, response)| response.sway.rigid_hz(branch)).fold(f64::INFINITY, f64::min);
+    if slowest_hz.is_finite() { LOWEST_SHARE * slowest_hz } else { 1.0 }
 }
 
 /// The greatest value and its neighbours tell where between them the peak is.
-fn peak_hz(lags: &[f32]) -> Option<f64> {
+fn peak(lags: &[f32]) -> Option<f64> {
     let highest = (0..lags.len()).max_by(|&a, &b| lags[a].total_cmp(&lags[b]))?;
     let (before, after) = (*lags.get(highest.checked_sub(1)?)?, *lags.get(highest + 1)?);
     let curvature = before - 2.0 * lags[highest] + after;
     let off = 0.5 * (before - after) / curvature;
-    (off.is_finite() && lags[highest] > 0.0).then(|| frequency_hz(highest as f64 + f64::from(off)))
+    (off.is_finite() && lags[highest] > 0.0).then(|| ratio(highest as f64 + f64::from(off)))
 }
 
 /// What is beyond a place, as one body. Forces, moments and turns are about that place.
@@ -136,12 +148,12 @@ struct Bodies {
 }
 
 impl Bodies {
-    fn new(branches: &[LoadedBranch]) -> Self {
+    fn new(branches: &[LoadedBranch], responses: &[BranchResponse]) -> Self {
         let mut bodies: Vec<Body> = Vec::with_capacity(branches.len());
         let mut pieces: Vec<Piece> = Vec::new();
-        for branch in branches {
+        for (branch, response) in branches.iter().zip(responses) {
             let first = pieces.len();
-            pieces.extend(pieces_of(branch));
+            pieces.extend(if branch.swaying_hinges.is_empty() { vec![twig(branch, response)] } else { pieces_of(branch) });
             let sensor_m = SENSOR * branch.length_m;
             let sensor = piece_at(&branch.swaying_hinges, sensor_m);
             let sensor_arm = branch.swaying_hinges.get(sensor).map_or(Vec3::ZERO, |hinge| (hinge.direction * (sensor_m - hinge.along_m)).as_vec3());
@@ -159,30 +171,78 @@ impl Bodies {
         Self { bodies, pieces }
     }
 
-    /// A branch as one body about its root, and how its sensor moves along the wind while the root is held.
-    fn branch(&self, index: usize, z: Four, articulated: &[Articulated]) -> (Articulated, Four) {
+    /// A branch as one body about its root, as the branch that carries it feels it.
+    fn carried(&self, index: usize, z: Four, articulated: &[Articulated]) -> Articulated {
         let body = &self.bodies[index];
         let mut beyond = Articulated::default();
-        let mut probes: Option<[[Vector; 2]; 2]> = None;
-        let mut answer = Four::ZERO;
+        for piece in self.pieces[body.first..body.end].iter().rev() {
+            self.load(&mut beyond, piece, z, articulated);
+            beyond.release_weightless(piece);
+            beyond = beyond.seen_from(piece.arm);
+        }
+        beyond
+    }
+
+    /// How the sensor of a branch moves along the wind while its root is held.
+    fn answer(&self, index: usize, z: Four, articulated: &[Articulated]) -> Four {
+        let body = &self.bodies[index];
+        let mut beyond = Articulated::default();
+        let mut probes: Option<[Probe; 2]> = None;
         for index in (body.first..body.end).rev() {
             let piece = &self.pieces[index];
-            piece.add_to(&mut beyond, z);
-            let mut child = piece.first_child;
-            while let Some(branch) = child {
-                beyond.add(&articulated[branch as usize].seen_from(self.bodies[branch as usize].arm));
-                child = self.bodies[branch as usize].next_sibling;
-            }
+            self.load(&mut beyond, piece, z, articulated);
             if index == body.sensor {
-                probes = Some(body.winds.map(|wind| [wind, body.sensor_arm.cross(wind)].map(constant)));
+                probes = Some(body.winds.map(|wind| Probe::new(wind, body.sensor_arm)));
             }
-            answer += beyond.release(piece, body.winds, probes.as_mut());
+            beyond.weigh(piece);
+            let coupled = beyond.coupled(piece);
+            let compliance = beyond.compliance(piece);
+            for probe in probes.iter_mut().flatten() {
+                probe.release(&beyond, &compliance, &coupled);
+            }
+            beyond.release(&compliance, &coupled);
             beyond = beyond.seen_from(piece.arm);
-            for [force, moment] in probes.iter_mut().flatten() {
-                add(moment, &cross(piece.arm, force));
+            for probe in probes.iter_mut().flatten() {
+                add(&mut probe.moment, &cross(piece.arm, &probe.force));
             }
         }
-        (beyond, answer)
+        probes.iter().flatten().fold(Four::ZERO, |sum, probe| sum + probe.moved)
+    }
+
+    /// Adds what a piece bears.
+    fn load(&self, beyond: &mut Articulated, piece: &Piece, z: Four, articulated: &[Articulated]) {
+        piece.add_to(beyond, z);
+        let mut child = piece.first_child;
+        while let Some(branch) = child {
+            beyond.add(&articulated[branch as usize].seen_from(self.bodies[branch as usize].arm));
+            child = self.bodies[branch as usize].next_sibling;
+        }
+    }
+}
+
+/// How far a place on a branch moves along a wind: by what the hinges beyond the one that is reached do, and by the motion of the
+/// piece there.
+#[derive(Clone, Copy)]
+struct Probe {
+    wind: Vec3,
+    moved: Four,
+    force: Vector,
+    moment: Vector,
+}
+
+impl Probe {
+    fn new(wind: Vec3, arm: Vec3) -> Self {
+        let constant = |vector: Vec3| vector.to_array().map(Four::real);
+        Self { wind, moved: Four::ZERO, force: constant(wind), moment: constant(arm.cross(wind)) }
+    }
+
+    fn release(&mut self, body: &Articulated, compliance: &Matrix, coupled: &Matrix) {
+        let load: Vector =
+            std::array::from_fn(|n| body.loads[0][1][n] * self.wind.x + body.loads[1][1][n] * self.wind.z);
+        let turned = times(compliance, &self.moment);
+        self.moved += dot(&turned, &load);
+        subtract(&mut self.force, &times(&body.coupling, &turned));
+        subtract(&mut self.moment, &times(coupled, &turned));
     }
 }
 
@@ -218,51 +278,82 @@ impl Articulated {
         Self { force: self.force, coupling, turn, loads }
     }
 
-    /// Lets the body turn about the hinge that bears it. Of what the probes move by, the part that the winds make this hinge do.
-    fn release(&mut self, piece: &Piece, winds: [Vec3; 2], probes: Option<&mut [[Vector; 2]; 2]>) -> Four {
-        let (along, bend, twist) = (piece.direction.to_array(), piece.bend, piece.twist - piece.bend);
-        let mut stiff = self.turn;
-        let mut coupled = self.turn;
+    /// What weight adds to the stiffness.
+    fn weigh(&mut self, piece: &Piece) {
+        for row in 0..3 {
+            for column in 0..3 {
+                self.turn[row][column].re += piece.weight.col(column)[row];
+            }
+        }
+    }
+
+    /// How the turn of the piece before the hinge is coupled with that of the hinge, by weight as well.
+    fn coupled(&self, piece: &Piece) -> Matrix {
         let half = piece.half_moment;
         let halves = [[0.0, -half.z, half.y], [half.z, 0.0, -half.x], [-half.y, half.x, 0.0]];
+        let mut coupled = self.turn;
+        for row in 0..3 {
+            for column in 0..3 {
+                coupled[row][column].re += halves[row][column];
+            }
+        }
+        coupled
+    }
+
+    /// Turn of the hinge under a moment.
+    fn compliance(&self, piece: &Piece) -> Matrix {
+        let (along, bend, twist) = (piece.direction.to_array(), piece.bend, piece.twist - piece.bend);
+        let mut stiff = self.turn;
         for row in 0..3 {
             stiff[row][row].re += bend;
             for column in 0..3 {
                 stiff[row][column].re += twist * along[row] * along[column];
-                coupled[row][column].re += halves[row][column];
             }
         }
-        let compliance = inverse(&stiff);
-        let mut answer = Four::ZERO;
-        for (probe, wind) in probes.into_iter().flatten().zip(winds) {
-            let load: Vector = std::array::from_fn(|n| self.loads[0][1][n] * wind.x + self.loads[1][1][n] * wind.z);
-            let turned = times(&compliance, &probe[1]);
-            answer += dot(&turned, &load);
-            subtract(&mut probe[0], &times(&self.coupling, &turned));
-            subtract(&mut probe[1], &times(&coupled, &turned));
-        }
+        inverse(&stiff)
+    }
+
+    /// Lets the body turn about the hinge that bears it, given the hinge's compliance and what couples it.
+    fn release(&mut self, compliance: &Matrix, coupled: &Matrix) {
+        let by_force = times_transposed(&self.coupling, compliance);
+        let by_turn = times_transposed(coupled, compliance);
         for [force, moment] in &mut self.loads {
-            let turned = times(&compliance, moment);
-            subtract(force, &times(&self.coupling, &turned));
-            subtract(moment, &times(&coupled, &turned));
+            subtract(force, &times(&by_force, moment));
+            *moment = subtracted(moment, &times(&by_turn, moment));
         }
-        // How it turns for a force and for a turn of what bears it, transposed.
-        let by_force = times_transposed(&self.coupling, &compliance);
-        let by_turn = times_transposed(&coupled, &compliance);
         let forces = symmetric_times_transposed(&by_force, &self.coupling);
-        let couplings = times_transposed(&by_force, &coupled);
-        let turns = symmetric_times_transposed(&by_turn, &coupled);
+        let couplings = times_transposed(&by_force, coupled);
+        let turns = symmetric_times_transposed(&by_turn, coupled);
         for row in 0..3 {
             subtract(&mut self.force[row], &forces[row]);
             subtract(&mut self.coupling[row], &couplings[row]);
             subtract(&mut self.turn[row], &turns[row]);
         }
-        answer
     }
-}
 
-fn constant(vector: Vec3) -> Vector {
-    vector.to_array().map(Four::real)
+    /// The same for a piece without weight, for which `1 - R S = K S`.
+    fn release_weightless(&mut self, piece: &Piece) {
+        let compliance = self.compliance(piece);
+        let (along, bend, twist) = (piece.direction.to_array(), piece.bend, piece.twist - piece.bend);
+        let along_compliance: Vector = std::array::from_fn(|column| {
+            let [x, y, z] = compliance[column];
+            x * along[0] + y * along[1] + z * along[2]
+        });
+        let kept: Matrix = std::array::from_fn(|row| {
+            std::array::from_fn(|column| compliance[row][column] * bend + along_compliance[column] * (twist * along[row]))
+        });
+        let by_force = times_transposed(&self.coupling, &compliance);
+        for [force, moment] in &mut self.loads {
+            subtract(force, &times(&by_force, moment));
+            *moment = times(&kept, moment);
+        }
+        let forces = symmetric_times_transposed(&by_force, &self.coupling);
+        for row in 0..3 {
+            subtract(&mut self.force[row], &forces[row]);
+        }
+        self.coupling = times_transposed(&self.coupling, &kept);
+        self.turn = symmetric_times_transposed(&self.turn, &kept);
+    }
 }
 
 impl Piece {
@@ -277,7 +368,6 @@ impl Piece {
             for column in 0..3 {
                 body.coupling[row][column] -= z * moment[row][column];
                 body.turn[row][column] -= z * inertia[row][column];
-                body.turn[row][column].re += self.weight.col(column)[row];
             }
         }
         for (load, wind) in body.loads.iter_mut().zip([Vec3::X, Vec3::Z]) {
@@ -303,23 +393,9 @@ fn pieces_of(branch: &LoadedBranch) -> Vec<Piece> {
         .iter()
         .zip(weights)
         .map(|(hinge, weight)| {
-            let arm = (hinge.at - before).as_vec3();
+            let piece = Piece::new(hinge, before, Some(weight));
             before = hinge.at;
-            Piece {
-                at: hinge.at,
-                arm,
-                direction: hinge.direction.as_vec3(),
-                bend: hinge.bend_compliance.recip() as f32,
-                twist: hinge.twist_compliance.recip() as f32,
-                weight: weight.stiffness.as_mat3(),
-                half_moment: (weight.moment_nm * 0.5).as_vec3(),
-                mass: 0.0,
-                moment: Vec3::ZERO,
-                inertia: [0.0; 6],
-                drag: 0.0,
-                drag_moment: Vec3::ZERO,
-                first_child: None,
-            }
+            piece
         })
         .collect();
     for lump in branch.lumps.iter().filter(|lump| lump.is_own) {
@@ -328,7 +404,36 @@ fn pieces_of(branch: &LoadedBranch) -> Vec<Piece> {
     pieces
 }
 
+/// A branch that bears leaves alone, as one piece.
+fn twig(branch: &LoadedBranch, response: &BranchResponse) -> Piece {
+    let (along_m, bend_compliance) = response.sway.single_hinge(branch);
+    let direction = (branch.tip - branch.base).try_normalize().unwrap_or(DVec3::Y);
+    let twist_compliance = branch.hinges.iter().map(|hinge| hinge.twist_compliance).sum();
+    let hinge = Hinge { at: branch.base + direction * along_m, along_m, direction, bend_compliance, twist_compliance, ..branch.hinges[0] };
+    let mut piece = Piece::new(&hinge, branch.base, None);
+    branch.lumps.iter().for_each(|lump| piece.bear(lump));
+    piece
+}
+
 impl Piece {
+    fn new(hinge: &Hinge, before: DVec3, weight: Option<PieceWeight>) -> Self {
+        Self {
+            at: hinge.at,
+            arm: (hinge.at - before).as_vec3(),
+            direction: hinge.direction.as_vec3(),
+            bend: hinge.bend_compliance.recip() as f32,
+            twist: hinge.twist_compliance.recip() as f32,
+            weight: weight.map_or(Mat3::ZERO, |weight| weight.stiffness.as_mat3()),
+            half_moment: weight.map_or(Vec3::ZERO, |weight| (weight.moment_nm * 0.5).as_vec3()),
+            mass: 0.0,
+            moment: Vec3::ZERO,
+            inertia: [0.0; 6],
+            drag: 0.0,
+            drag_moment: Vec3::ZERO,
+            first_child: None,
+        }
+    }
+
     fn bear(&mut self, lump: &Lump) {
         let (mass, drag) = (lump.mass_kg as f32, lump.drag_kg_m as f32);
         let r = (lump.at.as_dvec3() - self.at).as_vec3();
