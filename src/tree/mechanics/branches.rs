@@ -38,7 +38,7 @@ pub(super) struct Lump {
 pub(super) struct LoadedBranch {
     pub beams: Vec<u32>,
     pub lumps: Vec<Lump>,
-    /// Many hinges for its bend; few for its sway, and none if it bears leaves alone.
+    /// Many hinges for its bend, and few for its sway.
     pub hinges: Vec<Hinge>,
     pub swaying_hinges: Vec<Hinge>,
     /// From its root on, at rest.

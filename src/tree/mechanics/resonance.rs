@@ -43,21 +43,21 @@ const DAMPING_RATIO: f32 = 0.1;
 /// The frequencies that are tried: the lowest by that of the slowest branch, the natural logarithm of the ratio of neighbours, and
 /// how many fours of them.
 const LOWEST_SHARE: f64 = 0.5;
-const STEP: f64 = 0.18;
-const FOURS: usize = 5;
+const STEP: f64 = 0.2;
+const FOURS: usize = 4;
 /// Where on a branch its motion is taken, as a share of its length.
 const SENSOR: f64 = 2.0 / 3.0;
 
 /// The natural frequency of each branch, Hz; none where no peak is within the frequencies that are tried.
 pub(super) fn resonances_hz(branches: &[LoadedBranch], responses: &[BranchResponse]) -> Vec<Option<f64>> {
-    let bodies = Bodies::new(branches, responses);
+    let bodies = Bodies::new(branches);
     let lowest_hz = lowest_hz(branches, responses);
     let mut lags: Vec<[f32; 4 * FOURS]> = vec![[0.0; 4 * FOURS]; branches.len()];
     let mut articulated = vec![Articulated::default(); branches.len()];
     for four in 0..FOURS {
         let z = stiffness_ratio(lowest_hz, four);
         for (index, branch) in branches.iter().enumerate().rev() {
-            if branch.bears {
+            if branch.bears || branch.carrier.is_none() {
                 let answer = bodies.answer(index, z, &articulated);
                 // Hinges of the stiffness K (1 + 2 i zeta) in place of K.
                 let lag = answer.re * (2.0 * DAMPING_RATIO) - answer.im;
@@ -84,7 +84,7 @@ fn ratio(index: f64) -> f64 {
 
 /// Where to begin: well below the slowest branch that bears others, were these rigid.
 fn lowest_hz(branches: &[LoadedBranch], responses: &[BranchResponse]) -> f64 {
-    let bearing = branches.iter().zip(responses).filter(|(branch, _)| branch.bears);
+    let bearing = branches.iter().zip(responses).filter(|(branch, _)| branch.bears || branch.carrier.is_none());
     let slowest_hz = bearing.map(|(branch, response)| response.sway.rigid_hz(branch)).fold(f64::INFINITY, f64::min);
     if slowest_hz.is_finite() { LOWEST_SHARE * slowest_hz } else { 1.0 }
 }
@@ -148,12 +148,12 @@ struct Bodies {
 }
 
 impl Bodies {
-    fn new(branches: &[LoadedBranch], responses: &[BranchResponse]) -> Self {
+    fn new(branches: &[LoadedBranch]) -> Self {
         let mut bodies: Vec<Body> = Vec::with_capacity(branches.len());
         let mut pieces: Vec<Piece> = Vec::new();
-        for (branch, response) in branches.iter().zip(responses) {
+        for branch in branches {
             let first = pieces.len();
-            pieces.extend(if branch.swaying_hinges.is_empty() { vec![twig(branch, response)] } else { pieces_of(branch) });
+            pieces.extend(pieces_of(branch));
             let sensor_m = SENSOR * branch.length_m;
             let sensor = piece_at(&branch.swaying_hinges, sensor_m);
             let sensor_arm = branch.swaying_hinges.get(sensor).map_or(Vec3::ZERO, |hinge| (hinge.direction * (sensor_m - hinge.along_m)).as_vec3());
@@ -171,15 +171,16 @@ impl Bodies {
         Self { bodies, pieces }
     }
 
-    /// A branch as one body about its root, as the branch that carries it feels it.
+    /// A branch as one body about the hinge that bears it, as the branch that carries it feels it.
     fn carried(&self, index: usize, z: Four, articulated: &[Articulated]) -> Articulated {
         let body = &self.bodies[index];
         let mut beyond = Articulated::default();
         for piece in self.pieces[body.first..body.end].iter().rev() {
             self.load(&mut beyond, piece, z, articulated);
             beyond.release_weightless(piece);
-            beyond = beyond.seen_from(piece.arm);
+            beyond.move_back(piece.arm);
         }
+        beyond.move_back(body.arm);
         beyond
     }
 
@@ -201,7 +202,7 @@ impl Bodies {
                 probe.release(&beyond, &compliance, &coupled);
             }
             beyond.release(&compliance, &coupled);
-            beyond = beyond.seen_from(piece.arm);
+            beyond.move_back(piece.arm);
             for probe in probes.iter_mut().flatten() {
                 add(&mut probe.moment, &cross(piece.arm, &probe.force));
             }
@@ -214,7 +215,7 @@ impl Bodies {
         piece.add_to(beyond, z);
         let mut child = piece.first_child;
         while let Some(branch) = child {
-            beyond.add(&articulated[branch as usize].seen_from(self.bodies[branch as usize].arm));
+            beyond.add(&articulated[branch as usize]);
             child = self.bodies[branch as usize].next_sibling;
         }
     }
@@ -259,23 +260,22 @@ impl Articulated {
         }
     }
 
-    /// The same about a place from which this one's is an `arm` away.
-    fn seen_from(&self, arm: Vec3) -> Self {
-        let coupling: Matrix = std::array::from_fn(|row| {
-            let mut coupled = self.coupling[row];
-            add(&mut coupled, &cross(arm, &self.force[row]));
-            coupled
-        });
-        // Columns of the new coupling and rows of the old one, both crossed with the arm.
-        let [after, before] = [transposed(&coupling), transposed(&self.coupling)].map(|m| m.map(|column| cross(arm, &column)));
-        let turn = std::array::from_fn(|row| {
-            std::array::from_fn(|column| self.turn[row][column] + after[column][row] + before[row][column])
-        });
-        let loads = self.loads.map(|[force, mut moment]| {
-            add(&mut moment, &cross(arm, &force));
-            [force, moment]
-        });
-        Self { force: self.force, coupling, turn, loads }
+    /// Tells the same about a place from which this one's is an `arm` away.
+    fn move_back(&mut self, arm: Vec3) {
+        // Columns of the old coupling and of the new one, both crossed with the arm.
+        let before = transposed(&self.coupling).map(|column| cross(arm, &column));
+        for (coupling, force) in self.coupling.iter_mut().zip(&self.force) {
+            add(coupling, &cross(arm, force));
+        }
+        let after = transposed(&self.coupling).map(|column| cross(arm, &column));
+        for row in 0..3 {
+            for column in 0..3 {
+                self.turn[row][column] += after[column][row] + before[row][column];
+            }
+        }
+        for [force, moment] in &mut self.loads {
+            add(moment, &cross(arm, force));
+        }
     }
 
     /// What weight adds to the stiffness.
@@ -393,7 +393,7 @@ fn pieces_of(branch: &LoadedBranch) -> Vec<Piece> {
         .iter()
         .zip(weights)
         .map(|(hinge, weight)| {
-            let piece = Piece::new(hinge, before, Some(weight));
+            let piece = Piece::new(hinge, before, weight);
             before = hinge.at;
             piece
         })
@@ -404,27 +404,16 @@ fn pieces_of(branch: &LoadedBranch) -> Vec<Piece> {
     pieces
 }
 
-/// A branch that bears leaves alone, as one piece.
-fn twig(branch: &LoadedBranch, response: &BranchResponse) -> Piece {
-    let (along_m, bend_compliance) = response.sway.single_hinge(branch);
-    let direction = (branch.tip - branch.base).try_normalize().unwrap_or(DVec3::Y);
-    let twist_compliance = branch.hinges.iter().map(|hinge| hinge.twist_compliance).sum();
-    let hinge = Hinge { at: branch.base + direction * along_m, along_m, direction, bend_compliance, twist_compliance, ..branch.hinges[0] };
-    let mut piece = Piece::new(&hinge, branch.base, None);
-    branch.lumps.iter().for_each(|lump| piece.bear(lump));
-    piece
-}
-
 impl Piece {
-    fn new(hinge: &Hinge, before: DVec3, weight: Option<PieceWeight>) -> Self {
+    fn new(hinge: &Hinge, before: DVec3, weight: PieceWeight) -> Self {
         Self {
             at: hinge.at,
             arm: (hinge.at - before).as_vec3(),
             direction: hinge.direction.as_vec3(),
             bend: hinge.bend_compliance.recip() as f32,
             twist: hinge.twist_compliance.recip() as f32,
-            weight: weight.map_or(Mat3::ZERO, |weight| weight.stiffness.as_mat3()),
-            half_moment: weight.map_or(Vec3::ZERO, |weight| (weight.moment_nm * 0.5).as_vec3()),
+            weight: weight.stiffness.as_mat3(),
+            half_moment: (weight.moment_nm * 0.5).as_vec3(),
             mass: 0.0,
             moment: Vec3::ZERO,
             inertia: [0.0; 6],

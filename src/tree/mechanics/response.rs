@@ -48,29 +48,7 @@ impl BranchSway {
         };
         (sum(|y| y) / (sum(|y| y * y) + self.turning)).sqrt() / TAU
     }
-
-    /// A single hinge with which a rigid branch has the same effective mass and the same first frequency: its place along the branch, m,
-    /// and its turn for 1 N m.
-    ///
-    /// With `W = sum m y` and `I = sum m y^2` the effective mass of the static shape is `W^2 / I`; that of a body of the mass `M`, which
-    /// turns about a hinge a distance `d` from its centre, is `M d^2 / (d^2 + var)`, `var` the variance of the places of its mass.
-    pub fn single_hinge(&self, branch: &LoadedBranch) -> (f64, f64) {
-        let sum = |of: &dyn Fn(&Lump, f64) -> f64| -> f64 {
-            branch.lumps.iter().zip(&self.deflections_m).map(|(lump, y)| lump.mass_kg * of(lump, *y)).sum()
-        };
-        let place = |lump: &Lump| lump.attach_m + lump.arm_m;
-        let mass_kg = sum(&|_, _| 1.0);
-        let middle_m = sum(&|lump, _| place(lump)) / mass_kg;
-        let variance_m2 = sum(&|lump, _| (place(lump) - middle_m).powi(2)) / mass_kg;
-        let work = sum(&|_, y| y);
-        let effective = (work * work / (mass_kg * sum(&|_, y| y * y))).min(MOST_EFFECTIVE);
-        let arm_m = (variance_m2 * effective / (1.0 - effective)).sqrt();
-        (middle_m - arm_m, work / (mass_kg * arm_m).powi(2))
-    }
 }
-
-/// The most of a twig's mass that moves with its first mode.
-const MOST_EFFECTIVE: f64 = 0.95;
 
 impl LoadedBranch {
     pub fn response(&self, skeleton: &Skeleton) -> BranchResponse {
