@@ -3,6 +3,9 @@
 //! Shinozaki et al. (1964): a tree is a bundle of unit pipes, one from each bunch of leaves down to the root, so a
 //! cross-section counts the leaves beyond it. With Murray's exponent `e` (2 is Leonardo's rule of equal areas), a
 //! beam beyond which `n` of the tree's `N` leaf clusters lie has the radius `R (n / N)^(1/e)`, `R` the trunk's.
+//!
+//! A trunk so keeps what real ones have: with its leaves it could bear 5 to 70 times its weight before it would buckle, which
+//! is 2 to 4 times its height (McMahon 1973, Science 179, 1201: a quarter of the critical height).
 
 use crate::tree::skeleton::{LeafCluster, SkeletonBeam, continuations};
 
@@ -71,4 +74,48 @@ fn pipes_at_top(beams: &[SkeletonBeam], at_base: &[f32], at_tip: &[f32]) -> Vec<
         }
     }
     at_top
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::math::Vec3;
+
+    fn beam(parent: Option<u32>, attach: f32, order: u8) -> SkeletonBeam {
+        SkeletonBeam {
+            parent,
+            attach,
+            base: Vec3::Y * attach,
+            direction: if order == 0 { Vec3::Y } else { Vec3::X },
+            length_m: 1.0,
+            base_radius_m: 0.0,
+            tip_radius_m: 0.0,
+            bow: Vec3::ZERO,
+            order,
+        }
+    }
+
+    /// Without it a stem's end would be a tenth as thick as the wood that its uppermost branch needs.
+    #[test]
+    fn a_stem_is_as_thick_at_its_top_as_what_grows_there_needs() {
+        let mut beams = vec![beam(None, 0.0, 0), beam(Some(0), 0.5, 1), beam(Some(0), 0.875, 1)];
+        let leaf = |beam: u32| LeafCluster {
+            beam,
+            at: 1.0,
+            anchor: Vec3::ZERO,
+            axis: Vec3::X,
+            normal: Vec3::Y,
+            size_m: 0.1,
+            phase: 0.0,
+            depth: 0.0,
+            tint: 0.0,
+        };
+        let clusters: Vec<LeafCluster> = std::iter::once(0).chain([1; 100]).chain([2; 100]).map(leaf).collect();
+        assign_radii(&mut beams, &clusters, 0.1, 2.0);
+        // Half of the upper branch's 100 pipes, since it is half way up the last quarter, and its own.
+        let expected_m = 0.1 * (51.0_f32 / 201.0).sqrt();
+        assert!((beams[0].tip_radius_m - expected_m).abs() < 1e-6, "{}", beams[0].tip_radius_m);
+        // The branches bear none and taper to their own leaves.
+        assert!((beams[1].tip_radius_m - 0.1 * (100.0_f32 / 201.0).sqrt()).abs() < 1e-6);
+    }
 }

@@ -48,7 +48,7 @@ pub(super) struct LoadedBranch {
     pub tip: DVec3,
     /// Along its beams, m.
     pub length_m: f64,
-    /// Whether it carries other branches.
+    /// Whether it carries other branches, or is a stem, which might.
     pub bears: bool,
     /// What bears it; nothing but the ground a stem.
     pub carrier: Option<Carrier>,
@@ -107,19 +107,29 @@ pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> LoadedTree {
         let Piece { at, mass_kg, drag_kg_m, is_leaf } = piece;
         let mut is_own = true;
         loop {
-        let beam = &skeleton.beams[carrier as usize];
-        let arm = at - (beam.base + beam.direction * beam.length_m * attach);
-        let (branch, before_m) = places[carrier as usize];
-        let attach_m = before_m + f64::from(beam.length_m * attach);
-        let arm_m = f64::from(arm.dot(beam.direction));
-        let beside_m = f64::from(arm.reject_from_normalized(beam.direction).length());
-        let slot = tree.branch_of_slot.len() as u32;
-        tree.branch_of_slot.push(branch as u32);
-        tree.branches[branch].lumps.push(Lump { attach_m, arm_m, beside_m, mass_kg, drag_kg_m, at, is_leaf, is_own, slot });
-        is_own = false;
-        let root = &skeleton.beams[tree.branches[branch].beams[0] as usize];
-        let Some(parent) = root.parent else { return };
-        (carrier, attach) = (parent, root.attach);
+            let beam = &skeleton.beams[carrier as usize];
+            let arm = at - (beam.base + beam.direction * beam.length_m * attach);
+            let (branch, before_m) = places[carrier as usize];
+            let attach_m = before_m + f64::from(beam.length_m * attach);
+            let arm_m = f64::from(arm.dot(beam.direction));
+            let beside_m = f64::from(arm.reject_from_normalized(beam.direction).length());
+            let slot = tree.branch_of_slot.len() as u32;
+            tree.branch_of_slot.push(branch as u32);
+            tree.branches[branch].lumps.push(Lump {
+                attach_m,
+                arm_m,
+                beside_m,
+                mass_kg,
+                drag_kg_m,
+                at,
+                is_leaf,
+                is_own,
+                slot,
+            });
+            is_own = false;
+            let root = &skeleton.beams[tree.branches[branch].beams[0] as usize];
+            let Some(parent) = root.parent else { return };
+            (carrier, attach) = (parent, root.attach);
         }
     };
     for (index, beam) in (0u32..).zip(&skeleton.beams) {
@@ -153,7 +163,7 @@ impl LoadedBranch {
             base,
             tip: base,
             length_m: 0.0,
-            bears: false,
+            bears: carrier.is_none(),
             carrier,
         }
     }
@@ -167,7 +177,13 @@ impl LoadedBranch {
     /// The same branch without its leaves.
     pub fn without_leaves(&self) -> Self {
         let lumps = self.lumps.iter().filter(|lump| !lump.is_leaf).copied().collect();
-        Self { beams: self.beams.clone(), lumps, hinges: self.hinges.clone(), swaying_hinges: self.swaying_hinges.clone(), ..*self }
+        Self {
+            beams: self.beams.clone(),
+            lumps,
+            hinges: self.hinges.clone(),
+            swaying_hinges: self.swaying_hinges.clone(),
+            ..*self
+        }
     }
 }
 

@@ -1,24 +1,20 @@
-//! How fast a branch sways with all that it carries, which bends as well.
+//! How fast a branch sways with all that it carries, and how drag damps it.
 //!
-//! The forces `m` along an axis across the branch bend it and every branch that it carries. A piece moves by the sum over all
-//! branches between it and this one's root,
+//! The frequency is that of its resonance (`resonance.rs`), or, where that is too fast to be looked for and for branches that bear leaves
+//! alone, that of Rayleigh's method for rigid arms. For the damping its shape is that under the forces `m` along an axis across
+//! the branch, which bend it and every branch that it carries. A piece moves by the sum over all branches between it and
+//! this one's root,
 //!
 //! ```text
 //! u = sum_k y_k (e - (e . d_k) d_k)          y_k deflection of branch k at the piece, d_k its direction
-//! w^2 = sum m u . e / sum m |u|^2            Rayleigh's method
 //! damping by drag for 1 m/s = sum c |u|^2 / (w sum m |u|^2)
 //! ```
 //!
-//! Without it, a short stem with long boughs would sway three times as fast as it does, since its boughs sway more slowly than
-//! such a stem would under a rigid crown.
-//!
-//! A branch that sways more slowly by itself than the one that carries it does not follow it: it counts as rigid, with its
-//! mass. Which ones these are depends on the frequency that is sought. It is found from below: at first all bend, then those
-//! that are slower than the frequency found are taken out, until none is left. So a few limp twigs do not pass for the tree.
+//! A branch that sways more slowly than the one that carries it does not follow it: it counts as rigid, with its mass.
 
 use super::{
-    resonance::resonances_hz,
     branches::{LoadedBranch, LoadedTree},
+    resonance::resonances_hz,
     response::{BranchResponse, BranchSway},
 };
 use bevy::math::{DVec3, Vec3};
@@ -32,7 +28,7 @@ pub(super) struct CompositeSway {
     pub drag_damping_s_m: f64,
 }
 
-/// Sums over the pieces of a branch.
+/// Sums over the pieces of a branch, of `m |u|^2` and `c |u|^2`.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     inertia: f64,
@@ -45,23 +41,14 @@ pub(super) fn composite_sways(
     branches: &[LoadedBranch],
     responses: &[BranchResponse],
 ) -> Vec<CompositeSway> {
-    let t0 = std::time::Instant::now();
-    let found = resonances_hz(branches, responses);
-    if std::env::var("TIME").is_ok() { eprintln!("resonances {:?}", t0.elapsed()); }
-    let t0 = std::time::Instant::now();
     let slots = slots(tree, branches, responses);
-    let frequencies_hz: Vec<f64> = found
+    let frequencies_hz: Vec<f64> = resonances_hz(branches, responses)
         .into_iter()
         .zip(branches.iter().zip(responses))
-        .map(|(found_hz, (branch, response))| {
-            found_hz.unwrap_or_else(|| response.sway.rigid_hz(branch))
-        })
+        .map(|(found_hz, (branch, response))| found_hz.unwrap_or_else(|| response.sway.rigid_hz(branch)))
         .collect();
-    let bends = |branch: usize, carrier: usize| {
-        branch == carrier || frequencies_hz[branch] >= frequencies_hz[carrier]
-    };
+    let bends = |branch: usize, carrier: usize| branch == carrier || frequencies_hz[branch] >= frequencies_hz[carrier];
     let sums = sums(tree, branches, &slots, bends);
-    if std::env::var("TIME").is_ok() { eprintln!("composite {:?}", t0.elapsed()); }
     sums.iter()
         .zip(responses)
         .zip(&frequencies_hz)

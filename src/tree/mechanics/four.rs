@@ -131,3 +131,28 @@ pub(super) fn subtract<const N: usize>(a: &mut [Four; N], b: &[Four; N]) {
 pub(super) fn subtracted(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|n| a[n] - b[n])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Determinants of stems go beyond the root of the range of f32.
+    #[test]
+    fn inverses_are_inverses_for_twigs_and_for_stems() {
+        for scale in [1e-6_f32, 1.0, 1e10] {
+            let at = |re: f32, im: f32| Four { re: Vec4::splat(re * scale), im: Vec4::splat(im * scale) };
+            let [xx, xy, xz] = [at(2.0, -0.3), at(0.4, 0.1), at(-0.2, 0.05)];
+            let [yy, yz, zz] = [at(1.5, -0.2), at(0.3, -0.1), at(0.9, -0.1)];
+            let matrix = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+            let unit = times_transposed(&matrix, &inverse(&matrix));
+            for (row, column) in (0..9).map(|index| (index / 3, index % 3)) {
+                let expected = if row == column { 1.0 } else { 0.0 };
+                let Four { re, im } = unit[row][column];
+                assert!(
+                    (re - expected).abs().max_element() < 1e-5 && im.abs().max_element() < 1e-5,
+                    "{scale}: {re} {im}"
+                );
+            }
+        }
+    }
+}

@@ -38,12 +38,12 @@ use super::{
 use bevy::math::{DVec3, Mat3, Vec3, Vec4};
 use std::f64::consts::TAU;
 
-/// Damping ratio of the peaks, wood and leaves in a wind: what is nearer together than some 15% is one peak.
-const DAMPING_RATIO: f32 = 0.1;
+/// Damping ratio of the peaks, that of branches in a moderate wind: what is nearer together than some 15% is one peak.
+const DAMPING_RATIO: f32 = 0.12;
 /// The frequencies that are tried: the lowest by that of the slowest branch, the natural logarithm of the ratio of neighbours, and
 /// how many fours of them.
-const LOWEST_SHARE: f64 = 0.5;
-const STEP: f64 = 0.2;
+const LOWEST_SHARE: f64 = 0.6;
+const STEP: f64 = 0.17;
 const FOURS: usize = 4;
 /// Where on a branch its motion is taken, as a share of its length.
 const SENSOR: f64 = 2.0 / 3.0;
@@ -57,7 +57,7 @@ pub(super) fn resonances_hz(branches: &[LoadedBranch], responses: &[BranchRespon
     for four in 0..FOURS {
         let z = stiffness_ratio(lowest_hz, four);
         for (index, branch) in branches.iter().enumerate().rev() {
-            if branch.bears || branch.carrier.is_none() {
+            if branch.bears {
                 let answer = bodies.answer(index, z, &articulated);
                 // Hinges of the stiffness K (1 + 2 i zeta) in place of K.
                 let lag = answer.re * (2.0 * DAMPING_RATIO) - answer.im;
@@ -73,7 +73,9 @@ pub(super) fn resonances_hz(branches: &[LoadedBranch], responses: &[BranchRespon
 
 /// `z` at four frequencies.
 fn stiffness_ratio(lowest_hz: f64, four: usize) -> Four {
-    let square = Vec4::from_array(std::array::from_fn(|lane| (TAU * lowest_hz * ratio((4 * four + lane) as f64)).powi(2) as f32));
+    let square = Vec4::from_array(std::array::from_fn(|lane| {
+        (TAU * lowest_hz * ratio((4 * four + lane) as f64)).powi(2) as f32
+    }));
     let norm = 1.0 + 4.0 * DAMPING_RATIO * DAMPING_RATIO;
     Four { re: square / norm, im: square * (-2.0 * DAMPING_RATIO / norm) }
 }
@@ -84,7 +86,7 @@ fn ratio(index: f64) -> f64 {
 
 /// Where to begin: well below the slowest branch that bears others, were these rigid.
 fn lowest_hz(branches: &[LoadedBranch], responses: &[BranchResponse]) -> f64 {
-    let bearing = branches.iter().zip(responses).filter(|(branch, _)| branch.bears || branch.carrier.is_none());
+    let bearing = branches.iter().zip(responses).filter(|(branch, _)| branch.bears);
     let slowest_hz = bearing.map(|(branch, response)| response.sway.rigid_hz(branch)).fold(f64::INFINITY, f64::min);
     if slowest_hz.is_finite() { LOWEST_SHARE * slowest_hz } else { 1.0 }
 }
@@ -156,13 +158,24 @@ impl Bodies {
             pieces.extend(pieces_of(branch));
             let sensor_m = SENSOR * branch.length_m;
             let sensor = piece_at(&branch.swaying_hinges, sensor_m);
-            let sensor_arm = branch.swaying_hinges.get(sensor).map_or(Vec3::ZERO, |hinge| (hinge.direction * (sensor_m - hinge.along_m)).as_vec3());
+            let sensor_arm = branch
+                .swaying_hinges
+                .get(sensor)
+                .map_or(Vec3::ZERO, |hinge| (hinge.direction * (sensor_m - hinge.along_m)).as_vec3());
             let mut ways = winds(branch).into_iter();
             let winds = std::array::from_fn(|_| ways.next().unwrap_or(DVec3::ZERO).as_vec3());
-            let mut body =
-                Body { first, end: pieces.len(), arm: Vec3::ZERO, next_sibling: None, sensor: first + sensor, sensor_arm, winds };
+            let mut body = Body {
+                first,
+                end: pieces.len(),
+                arm: Vec3::ZERO,
+                next_sibling: None,
+                sensor: first + sensor,
+                sensor_arm,
+                winds,
+            };
             if let Some(carrier) = branch.carrier {
-                let bearer = bodies[carrier.branch].first + piece_at(&branches[carrier.branch].swaying_hinges, carrier.attach_m);
+                let bearer =
+                    bodies[carrier.branch].first + piece_at(&branches[carrier.branch].swaying_hinges, carrier.attach_m);
                 body.arm = (branch.base - pieces[bearer].at).as_vec3();
                 body.next_sibling = pieces[bearer].first_child.replace(bodies.len() as u32);
             }
@@ -340,7 +353,9 @@ impl Articulated {
             x * along[0] + y * along[1] + z * along[2]
         });
         let kept: Matrix = std::array::from_fn(|row| {
-            std::array::from_fn(|column| compliance[row][column] * bend + along_compliance[column] * (twist * along[row]))
+            std::array::from_fn(|column| {
+                compliance[row][column] * bend + along_compliance[column] * (twist * along[row])
+            })
         });
         let by_force = times_transposed(&self.coupling, &compliance);
         for [force, moment] in &mut self.loads {
@@ -430,14 +445,8 @@ impl Piece {
         self.moment += r * mass;
         self.drag += drag;
         self.drag_moment += r * drag;
-        let products = [
-            r.y * r.y + r.z * r.z,
-            r.x * r.x + r.z * r.z,
-            r.x * r.x + r.y * r.y,
-            -r.x * r.y,
-            -r.x * r.z,
-            -r.y * r.z,
-        ];
+        let products =
+            [r.y * r.y + r.z * r.z, r.x * r.x + r.z * r.z, r.x * r.x + r.y * r.y, -r.x * r.y, -r.x * r.z, -r.y * r.z];
         self.inertia.iter_mut().zip(products).for_each(|(inertia, product)| *inertia += mass * product);
     }
 }

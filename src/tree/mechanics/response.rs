@@ -5,13 +5,17 @@ use super::{
     hinges::Hinge,
     statics::{Beyond, influence, softening, winds},
 };
+use crate::{dynamics::pose::SLOPE_TIP, tree::skeleton::Skeleton};
 use bevy::math::DVec3;
 use std::f64::consts::TAU;
-use crate::{dynamics::pose::SLOPE_TIP, tree::skeleton::Skeleton};
 
 /// Roughness lengths of open country and of land with scattered trees, m ("roughly open" and "rough" in Davenport's
 /// classes; Wieringa 1992, J. Wind Eng. Ind. Aerodyn. 41): the pressure at a load's height is right over both.
 const ROUGHNESS_M: [f64; 2] = [0.1, 0.3];
+
+/// The most that a beam turns for the sake of its tip's place, by what its wood turns: it would be more where the beam points so
+/// that its turn hardly moves the branch's tip.
+const MOST_TURN: f64 = 2.0;
 
 /// What a branch does under load.
 pub(super) struct BranchResponse {
@@ -110,17 +114,19 @@ impl LoadedBranch {
 
     /// The bend of each beam under the drag.
     ///
-    /// Beams are posed along the first mode of a beam with a free tip. It turns the end by the right angle for one deflection only, so each
-    /// is bent by as much as moves the branch's tip as far as its hinges do.
+    /// Beams are posed along the first mode of a beam with a free tip, whose deflection is right for one turn only: each is bent by as
+    /// much as moves the branch's tip as far as its hinges do.
     fn loads(&self, skeleton: &Skeleton, winds: &[DVec3]) -> Vec<BeamLoad> {
         let sums = Beyond::sums(self, &self.hinges, load_moments);
         let mut moved = vec![[0.0; MOMENTS]; self.beams.len()];
+        let mut turned = vec![0.0; self.beams.len()];
         for (hinge, sum) in self.hinges.iter().zip(&sums) {
             for &wind in winds {
                 let influence = influence(hinge, self.tip, wind);
                 for (n, moved) in moved[hinge.beam].iter_mut().enumerate() {
                     *moved += sum.about(hinge.at, n).dot(influence);
                 }
+                turned[hinge.beam] += hinge.turn(sum.about(hinge.at, 0).cross(wind)).length() / winds.len() as f64;
             }
         }
         let posed = |beam: u32| {
@@ -135,7 +141,8 @@ impl LoadedBranch {
                 })
                 .sum::<f64>()
         };
-        self.beams.iter().zip(&moved).map(|(&beam, moved)| BeamLoad::of(moved, posed(beam))).collect()
+        let turns = self.beams.iter().zip(moved).zip(turned);
+        turns.map(|((&beam, moved), turned)| BeamLoad::of(&moved, posed(beam), MOST_TURN * turned)).collect()
     }
 
     /// Radius at a distance from the root, m; beyond its end that of the tip.
@@ -166,11 +173,11 @@ fn load_moments(lump: &Lump) -> [f64; MOMENTS] {
 }
 
 impl BeamLoad {
-    /// From how far the tip moves by each moment, m, and for a turn of the beam by 1 rad.
-    fn of(moments: &[f64; MOMENTS], posed_m: f64) -> Self {
+    /// From how far the tip moves by each moment, m, and for a turn of the beam by 1 rad; and the most that it may turn, rad.
+    fn of(moments: &[f64; MOMENTS], posed_m: f64, most_rad: f64) -> Self {
         let [drag, open, rough, ..] = *moments;
         let (height_m, share) = load_height(open / drag, rough / drag);
-        let turn = drag * share / posed_m;
+        let turn = (drag / posed_m).min(most_rad) * share;
         // Boughs that reach back past their root would bend a beam against the wind: it is kept still instead.
         if !(drag > 0.0 && turn > 0.0) {
             return Self { gain: 0.0, height_m: 0.0, horizontal_m: 0.0, vertical_m: 0.0 };

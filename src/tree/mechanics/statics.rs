@@ -22,15 +22,15 @@
 //! there, and `M` the moment of the weight at a hinge, which tips a level branch over sideways.
 
 use super::{
-    branches::LoadedBranch,
+    branches::{LoadedBranch, Lump},
     hinges::{Hinge, outer},
 };
 use bevy::math::{DMat3, DVec3};
 
 /// Gravity, m/s^2 (standard).
 pub(super) const GRAVITY_M_S2: f64 = 9.806_65;
-/// Least share of its stiffness that weight leaves a branch. A tree that does not fall over has some, and trees keep about twice
-/// what they need against their own weight (Science 179, 1201, 1973: trees have a quarter of the height at which they would buckle).
+/// Least share of its stiffness that weight leaves a branch, or it counts as weightless. Real trees keep far more: they have a quarter of
+/// the height at which they would buckle (McMahon 1973, Science 179, 1201).
 const LEAST_STIFFNESS_SHARE: f64 = 0.5;
 /// Where a branch is thinner than this share of its root, what it bears weighs as if it were rigid: a leader, as it is drawn,
 /// would hardly stand under sprays that are lumps.
@@ -53,7 +53,7 @@ pub(super) struct Beyond<const N: usize> {
 
 impl<const N: usize> Beyond<N> {
     /// One for each hinge.
-    pub fn sums(branch: &LoadedBranch, hinges: &[Hinge], weights: impl Fn(&super::branches::Lump) -> [f64; N]) -> Vec<Self> {
+    pub fn sums(branch: &LoadedBranch, hinges: &[Hinge], weights: impl Fn(&Lump) -> [f64; N]) -> Vec<Self> {
         let mut sum = Self { weights: [0.0; N], moments: [DVec3::ZERO; N] };
         let mut before = branch.lumps.iter().rev().peekable();
         let mut sums: Vec<Self> = hinges
@@ -93,6 +93,8 @@ pub(super) struct PieceWeight {
 }
 
 impl PieceWeight {
+    const NONE: Self = Self { stiffness: DMat3::ZERO, moment_nm: DVec3::ZERO };
+
     /// Of every piece of a branch. Nothing where the branch would not stand if it were twice as heavy: as it is drawn, it is too thin for
     /// what it bears.
     pub fn of(hinges: &[Hinge], mass: &[Beyond<1>]) -> Vec<Self> {
@@ -100,7 +102,7 @@ impl PieceWeight {
         let weighed = slender.unwrap_or(hinges.len());
         let weight = |index: usize| {
             if index >= weighed {
-                return Self { stiffness: DMat3::ZERO, moment_nm: DVec3::ZERO };
+                return Self::NONE;
             }
             let about = mass[index].about(hinges[index].at, 0);
             let bears = match hinges.get(index + 1).filter(|_| index + 1 < weighed) {
@@ -112,10 +114,13 @@ impl PieceWeight {
             Self { stiffness: lift * GRAVITY_M_S2, moment_nm: about.cross(up * -GRAVITY_M_S2) }
         };
         let weights: Vec<Self> = (0..hinges.len()).map(weight).collect();
-        let none = Self { stiffness: DMat3::ZERO, moment_nm: DVec3::ZERO };
-        let stands = Chain::new(hinges, &weights, 1.0 / LEAST_STIFFNESS_SHARE).is_some();
-        if stands { weights } else { vec![none; hinges.len()] }
+        if stands(hinges, &weights, 1.0 / LEAST_STIFFNESS_SHARE) { weights } else { vec![Self::NONE; hinges.len()] }
     }
+}
+
+/// Whether a branch stands if it is so many times as heavy.
+pub(super) fn stands(hinges: &[Hinge], weights: &[PieceWeight], times: f64) -> bool {
+    Chain::new(hinges, weights, times).is_some()
 }
 
 /// The tip's deflection under the drag, by what it would be without weight.
