@@ -1,5 +1,6 @@
 //! Cuts a skeleton into branches, each with the lumps of mass and drag that it carries.
 
+use super::hinges::Hinge;
 use crate::{
     constants::AIR_DENSITY_KG_M3,
     tree::{
@@ -7,7 +8,7 @@ use crate::{
         species::Species,
     },
 };
-use bevy::math::Vec3;
+use bevy::math::{DVec3, Vec3};
 use std::f64::consts::PI;
 
 /// Drag coefficient of a round branch across the flow below the drag crisis (Simiu & Scanlan 1978).
@@ -27,6 +28,8 @@ pub(super) struct Lump {
     pub at: Vec3,
     /// Whether it is of leaves, which may be shed.
     pub is_leaf: bool,
+    /// Whether the branch bears it itself, and not a branch that it carries.
+    pub is_own: bool,
     /// Its number among all lumps of the tree: those of a piece follow one another, from the branch that it is of to the stem.
     pub slot: u32,
 }
@@ -35,8 +38,28 @@ pub(super) struct Lump {
 pub(super) struct LoadedBranch {
     pub beams: Vec<u32>,
     pub lumps: Vec<Lump>,
+    /// Many hinges for its bend, and few for its sway.
+    pub hinges: Vec<Hinge>,
+    pub swaying_hinges: Vec<Hinge>,
     /// From its root on, at rest.
     pub direction: Vec3,
+    /// Its root and its tip at rest, m.
+    pub base: DVec3,
+    pub tip: DVec3,
+    /// Along its beams, m.
+    pub length_m: f64,
+    /// Whether it carries other branches, or is a stem, which might.
+    pub bears: bool,
+    /// What bears it; nothing but the ground a stem.
+    pub carrier: Option<Carrier>,
+}
+
+/// The branch that bears another, and where on it.
+#[derive(Clone, Copy)]
+pub(super) struct Carrier {
+    pub branch: usize,
+    /// Distance from its root along it, m.
+    pub attach_m: f64,
 }
 
 /// A tree as branches, and how its pieces hang on them.
@@ -62,28 +85,52 @@ pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> LoadedTree {
                 (branch, before_m + f64::from(skeleton.beams[parent as usize].length_m))
             }
             None => {
-                branches.push(LoadedBranch { beams: Vec::new(), lumps: Vec::new(), direction: beam.direction });
+                let carrier = beam.parent.map(|parent| {
+                    let (branch, before_m) = places[parent as usize];
+                    let attach_m = before_m + f64::from(skeleton.beams[parent as usize].length_m * beam.attach);
+                    Carrier { branch, attach_m }
+                });
+                branches.push(LoadedBranch::growing(beam, carrier));
                 (branches.len() - 1, 0.0)
             }
         };
-        branches[place.0].beams.push(index);
+        branches[place.0].extend(index, beam);
         places.push(place);
     }
+    for index in 0..branches.len() {
+        if let Some(carrier) = branches[index].carrier {
+            branches[carrier.branch].bears = true;
+        }
+    }
     let mut tree = LoadedTree { branches, branch_of_slot: Vec::new(), first_slots: Vec::new() };
-    let put_on = |tree: &mut LoadedTree, mut carrier: u32, mut attach: f32, piece: Piece| loop {
+    let put_on = |tree: &mut LoadedTree, mut carrier: u32, mut attach: f32, piece: Piece| {
         let Piece { at, mass_kg, drag_kg_m, is_leaf } = piece;
-        let beam = &skeleton.beams[carrier as usize];
-        let arm = at - (beam.base + beam.direction * beam.length_m * attach);
-        let (branch, before_m) = places[carrier as usize];
-        let attach_m = before_m + f64::from(beam.length_m * attach);
-        let arm_m = f64::from(arm.dot(beam.direction));
-        let beside_m = f64::from(arm.reject_from_normalized(beam.direction).length());
-        let slot = tree.branch_of_slot.len() as u32;
-        tree.branch_of_slot.push(branch as u32);
-        tree.branches[branch].lumps.push(Lump { attach_m, arm_m, beside_m, mass_kg, drag_kg_m, at, is_leaf, slot });
-        let root = &skeleton.beams[tree.branches[branch].beams[0] as usize];
-        let Some(parent) = root.parent else { return };
-        (carrier, attach) = (parent, root.attach);
+        let mut is_own = true;
+        loop {
+            let beam = &skeleton.beams[carrier as usize];
+            let arm = at - (beam.base + beam.direction * beam.length_m * attach);
+            let (branch, before_m) = places[carrier as usize];
+            let attach_m = before_m + f64::from(beam.length_m * attach);
+            let arm_m = f64::from(arm.dot(beam.direction));
+            let beside_m = f64::from(arm.reject_from_normalized(beam.direction).length());
+            let slot = tree.branch_of_slot.len() as u32;
+            tree.branch_of_slot.push(branch as u32);
+            tree.branches[branch].lumps.push(Lump {
+                attach_m,
+                arm_m,
+                beside_m,
+                mass_kg,
+                drag_kg_m,
+                at,
+                is_leaf,
+                is_own,
+                slot,
+            });
+            is_own = false;
+            let root = &skeleton.beams[tree.branches[branch].beams[0] as usize];
+            let Some(parent) = root.parent else { return };
+            (carrier, attach) = (parent, root.attach);
+        }
     };
     for (carrier, attach, piece) in pieces(species, skeleton) {
         tree.first_slots.push(tree.branch_of_slot.len() as u32);
@@ -92,8 +139,46 @@ pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> LoadedTree {
     tree.first_slots.push(tree.branch_of_slot.len() as u32);
     for branch in &mut tree.branches {
         branch.lumps.sort_by(|a, b| a.attach_m.total_cmp(&b.attach_m));
+        branch.hinge(species, skeleton);
     }
     tree
+}
+
+impl LoadedBranch {
+    /// A branch that has no beam yet.
+    fn growing(first: &SkeletonBeam, carrier: Option<Carrier>) -> Self {
+        let base = first.base.as_dvec3();
+        Self {
+            beams: Vec::new(),
+            lumps: Vec::new(),
+            hinges: Vec::new(),
+            swaying_hinges: Vec::new(),
+            direction: first.direction,
+            base,
+            tip: base,
+            length_m: 0.0,
+            bears: carrier.is_none(),
+            carrier,
+        }
+    }
+
+    fn extend(&mut self, index: u32, beam: &SkeletonBeam) {
+        self.beams.push(index);
+        self.tip = (beam.base + beam.direction * beam.length_m).as_dvec3();
+        self.length_m += f64::from(beam.length_m);
+    }
+
+    /// The same branch without its leaves.
+    pub fn without_leaves(&self) -> Self {
+        let lumps = self.lumps.iter().filter(|lump| !lump.is_leaf).copied().collect();
+        Self {
+            beams: self.beams.clone(),
+            lumps,
+            hinges: self.hinges.clone(),
+            swaying_hinges: self.swaying_hinges.clone(),
+            ..*self
+        }
+    }
 }
 
 /// A beam's own wood as lumps: place on the beam, and share of its length.

@@ -1,23 +1,20 @@
-//! How fast a branch sways with all that it carries, which bends as well.
+//! How fast a branch sways with all that it carries, and how drag damps it.
 //!
-//! The forces `m` along an axis across the branch bend it and every branch that it carries. A piece moves by the sum over all
-//! branches between it and this one's root,
+//! The frequency is that of its resonance (`resonance.rs`), or, where that is too fast to be looked for and for branches that bear leaves
+//! alone, that of Rayleigh's method for rigid arms. For the damping its shape is that under the forces `m` along an axis across
+//! the branch, which bend it and every branch that it carries. A piece moves by the sum over all branches between it and
+//! this one's root,
 //!
 //! ```text
 //! u = sum_k y_k (e - (e . d_k) d_k)          y_k deflection of branch k at the piece, d_k its direction
-//! w^2 = sum m u . e / sum m |u|^2            Rayleigh's method
 //! damping by drag for 1 m/s = sum c |u|^2 / (w sum m |u|^2)
 //! ```
 //!
-//! Without it, a short stem with long boughs would sway three times as fast as it does, since its boughs sway more slowly than
-//! such a stem would under a rigid crown.
-//!
-//! A branch that sways more slowly by itself than the one that carries it does not follow it: it counts as rigid, with its
-//! mass. Which ones these are depends on the frequency that is sought. It is found from below: at first all bend, then those
-//! that are slower than the frequency found are taken out, until none is left. So a few limp twigs do not pass for the tree.
+//! A branch that sways more slowly than the one that carries it does not follow it: it counts as rigid, with its mass.
 
 use super::{
     branches::{LoadedBranch, LoadedTree},
+    resonance::resonances_hz,
     response::{BranchResponse, BranchSway},
 };
 use bevy::math::{DVec3, Vec3};
@@ -31,16 +28,12 @@ pub(super) struct CompositeSway {
     pub drag_damping_s_m: f64,
 }
 
-/// Sums over the pieces of a branch.
+/// Sums over the pieces of a branch, of `m |u|^2` and `c |u|^2`.
 #[derive(Clone, Copy, Default)]
 struct Sums {
-    work: f64,
     inertia: f64,
     drag: f64,
 }
-
-/// Rounds in which slow branches are taken out, at most.
-const ROUNDS: usize = 8;
 
 /// The sway of every branch of a tree, given the responses of all, which may lack lumps that are shed.
 pub(super) fn composite_sways(
@@ -49,32 +42,21 @@ pub(super) fn composite_sways(
     responses: &[BranchResponse],
 ) -> Vec<CompositeSway> {
     let slots = slots(tree, branches, responses);
-    let alone_hz: Vec<f64> =
-        branches.iter().zip(responses).map(|(branch, response)| alone_hz(branch, &response.sway)).collect();
-    let mut sways: Vec<CompositeSway> = Vec::new();
-    for _ in 0..ROUNDS {
-        let bends = |branch: usize, carrier: usize| {
-            branch == carrier || sways.get(carrier).is_none_or(|found| alone_hz[branch] >= found.frequency_hz)
-        };
-        let sums = sums(tree, branches, &slots, bends);
-        let next: Vec<CompositeSway> =
-            sums.iter().zip(responses).map(|(sums, response)| sums.sway(&response.sway)).collect();
-        let is_same = |(a, b): (&CompositeSway, &CompositeSway)| a.frequency_hz.to_bits() == b.frequency_hz.to_bits();
-        let is_settled = sways.len() == next.len() && sways.iter().zip(&next).all(is_same);
-        sways = next;
-        if is_settled {
-            break;
-        }
-    }
-    sways
-}
-
-/// Natural frequency of a branch that carries rigid arms, Hz.
-fn alone_hz(branch: &LoadedBranch, sway: &BranchSway) -> f64 {
-    let sum = |of: fn(f64) -> f64| -> f64 {
-        branch.lumps.iter().zip(&sway.deflections_m).map(|(lump, deflection_m)| lump.mass_kg * of(*deflection_m)).sum()
-    };
-    (sum(|y| y) / sway.softening / (sum(|y| y * y) + sway.turning)).sqrt() / TAU
+    let frequencies_hz: Vec<f64> = resonances_hz(branches, responses)
+        .into_iter()
+        .zip(branches.iter().zip(responses))
+        .map(|(found_hz, (branch, response))| found_hz.unwrap_or_else(|| response.sway.rigid_hz(branch)))
+        .collect();
+    let bends = |branch: usize, carrier: usize| branch == carrier || frequencies_hz[branch] >= frequencies_hz[carrier];
+    let sums = sums(tree, branches, &slots, bends);
+    sums.iter()
+        .zip(responses)
+        .zip(&frequencies_hz)
+        .map(|((sums, response), &frequency_hz)| CompositeSway {
+            frequency_hz,
+            drag_damping_s_m: sums.drag / (TAU * frequency_hz * (sums.inertia + 2.0 * response.sway.turning)),
+        })
+        .collect()
 }
 
 /// The sums of every branch, over what it carries. `bends` tells whether a branch (first) bends while another sways.
@@ -103,22 +85,12 @@ fn sums(
                 };
                 let moved: DVec3 = (first..=last).map(moved).sum();
                 let sum = &mut sums[carrier];
-                sum.work += mass_kg * moved.dot(axis);
                 sum.inertia += mass_kg * moved.length_squared();
                 sum.drag += drag_kg_m * moved.length_squared();
             }
         }
     }
     sums
-}
-
-impl Sums {
-    fn sway(self, branch: &BranchSway) -> CompositeSway {
-        // Both axes turn what is beside the branch.
-        let inertia = self.inertia + 2.0 * branch.turning;
-        let omega_rad_s = (self.work / branch.softening / inertia).sqrt();
-        CompositeSway { frequency_hz: omega_rad_s / TAU, drag_damping_s_m: self.drag / (omega_rad_s * inertia) }
-    }
 }
 
 /// What is known of a lump; nothing where it has been shed.

@@ -1,45 +1,36 @@
 //! How stiff, heavy and exposed each beam of a tree is: from a skeleton to the rows that are posed.
 //!
-//! A branch is a chain of tapered beams that continue one another, clamped where it grows from its parent. Every other
-//! beam and leaf cluster that it carries is a lump of mass and drag on a rigid arm, which is fixed somewhere along the
-//! chain and ends at `x` along it (and `r` beside it). With the bending moment `M(x)` of forces on the lumps that are fixed
-//! beyond `x`, and `E I(x)` of the round section
-//! (I = pi R^4/4, eq. 20 corrected),
+//! A branch is a chain of tapered beams that continue one another, clamped where it grows from its parent; a stem stands on a
+//! rotational spring (Neild & Wood 1999), since the ground gives: the root plate is a rigid disc of radius `a` that rocks on an
+//! elastic half-space, `k = 8 G a^3 / (3 (1 - nu))` (Borowicka 1943). The wood inside the bark bends and twists, as hinges between
+//! rigid pieces (`hinges.rs`), with `I = pi R^4/4` of the round section (eq. 20 corrected). Every other beam and leaf
+//! cluster that a branch carries is a lump of mass and drag (`branches.rs`). From that come
 //!
 //! ```text
-//! slope(x) = int_0^x M / E I,    y(x) = int_0^x slope
-//! gain of a beam  = (slope at its tip - slope at its root) under the drag for |u|u = 1 m^2/s^2, over phi_1'(1)
-//! w^2 of a branch = sum m y / sum m (y^2 + (r slope)^2),   y and slope under the forces m in place of the drag
-//! damping by drag = U (1 + V/2) sum c y^2 / (w sum m (y^2 + (r slope)^2)),   c |u| u = drag of a lump
+//! gain of a beam  = turn of its tip under the drag for |u|u = 1 m^2/s^2, over phi_1'(1)             (statics.rs, response.rs)
+//! w of a branch   = where it resonates with all that it carries, which bends, twists and sways too        (resonance.rs)
+//! damping by drag = U (1 + V/2) sum c |u|^2 / (w sum m |u|^2),   c |u| u = drag of a lump                (composite.rs)
 //! ```
 //!
-//! The third follows from drag by the velocity that a moving lump sees: `c (U - y')^(2 + V)` loses `(2 + V) c U y'`.
+//! The third follows from drag by the velocity that a moving lump sees: `c (U - y')^(2 + V)` loses `(2 + V) c U y'`. All beams
+//! of a branch sway with its frequency. Without what it bears a trunk would sway much faster (80% of the crown must go
+//! before it shows: Moore & Maguire 2004).
 //!
-//! The second is Rayleigh's method with the shape of the static deflection, which takes taper and load as they are: the
-//! generalised mass and stiffness (eqs. 20, 23) of the uniform beam's mode would make a tapering trunk a third too fast.
-//! All beams of a branch sway with its frequency. Without what it bears a trunk would sway much faster (80% of the
-//! crown must go before it shows: Moore & Maguire 2004).
+//! Weight pulls over what leans: it makes stems bend further, and stems and branches sway slower, or faster where they hang. How far a
+//! branch bends is worked out without its own weight.
 //!
-//! Three things make a standing tree slower than a clamped pole of clear wood, and are taken in:
-//! - bark is thick but bears little: `I` is that of the wood inside it;
-//! - the ground gives: a stem stands on a rotational spring `k` (Neild & Wood 1999), whose turn `M(0) / k` comes before
-//!   the slope above. The root plate is a rigid disc of radius `a` that rocks on an elastic half-space,
-//!   `k = 8 G a^3 / (3 (1 - nu))` (Borowicka 1943);
-//! - weight pulls over what leans: `sum m g int slope^2 dx` over the way to each lump is taken from the numerator
-//!   (`sum m y` is twice the elastic energy for forces `m`), with the sine of the beam's elevation: a hanging branch is
-//!   stiffened.
-//!
-//! The gains of a branch share a correction, with which its posed beams move its tip as far as the integral above. Where the
+//! A beam's turn is such that it moves the tip of its branch, along the wind, as far as its wood does by bending and twisting. What it cannot do
+//! is move it out of that direction, as the twist of a crooked branch does. Where the
 //! drag of a beam is, in height and in spread, is weighed by how much it bends that beam: that decides how much of the mean
 //! wind and of its gusts the beam feels (`dynamics::beam`). All this is worked out twice, with leaves and without.
-//!
-//! For its frequency and damping a branch moves with what it carries, which bends as well: `y` is the motion of a lump under
-//! the forces `m` on the whole of it (`composite.rs`). `branches.rs` cuts the skeleton into branches with their lumps,
-//! `response.rs` has the formulas above for a branch that carries rigid arms.
 
 mod branches;
 mod composite;
+mod four;
+mod hinges;
+mod resonance;
 mod response;
+mod statics;
 
 pub(crate) use branches::{Piece, tree_pieces};
 
@@ -68,12 +59,12 @@ pub(super) fn beam_dynamics(species: &Species, skeleton: &Skeleton) -> Vec<BeamD
     let tree = branches(species, skeleton);
     let has_leaves = !skeleton.clusters.is_empty();
     let exponents = [species.foliage.drag_exponent, species.wood.drag_exponent];
-    let in_leaf = TreeResponse::new(&tree, &tree.branches, species, skeleton);
+    let in_leaf = TreeResponse::new(&tree, &tree.branches, skeleton);
     in_leaf.write(&tree, exponents[usize::from(!has_leaves)], |beam, sway| rows[beam].in_leaf = sway);
     tree.branches.iter().for_each(|branch| share_angle_limit(branch, &mut rows));
     if has_leaves && !species.phenology.evergreen {
         let branches: Vec<LoadedBranch> = tree.branches.iter().map(LoadedBranch::without_leaves).collect();
-        let bare = TreeResponse::new(&tree, &branches, species, skeleton);
+        let bare = TreeResponse::new(&tree, &branches, skeleton);
         bare.write(&tree, exponents[1], |beam, sway| rows[beam].bare = sway);
     } else {
         rows.iter_mut().for_each(|row| row.bare = row.in_leaf);
@@ -88,8 +79,8 @@ struct TreeResponse {
 }
 
 impl TreeResponse {
-    fn new(tree: &LoadedTree, branches: &[LoadedBranch], species: &Species, skeleton: &Skeleton) -> Self {
-        let responses: Vec<BranchResponse> = branches.iter().map(|branch| branch.response(species, skeleton)).collect();
+    fn new(tree: &LoadedTree, branches: &[LoadedBranch], skeleton: &Skeleton) -> Self {
+        let responses: Vec<BranchResponse> = branches.iter().map(|branch| branch.response(skeleton)).collect();
         let sways = composite_sways(tree, branches, &responses);
         Self { responses, sways }
     }
@@ -142,7 +133,7 @@ pub struct TreeSway {
 #[must_use]
 pub fn tree_sway(species: &Species, skeleton: &Skeleton) -> TreeSway {
     let tree = branches(species, skeleton);
-    let in_leaf = TreeResponse::new(&tree, &tree.branches, species, skeleton);
+    let in_leaf = TreeResponse::new(&tree, &tree.branches, skeleton);
     let (frequency_hz, dbh_m) = match (tree.branches.first(), in_leaf.sways.first()) {
         (Some(trunk), Some(sway)) => (sway.frequency_hz as f32, 2.0 * trunk.radius_m(skeleton, BREAST_HEIGHT_M)),
         _ => (0.0, 0.0),

@@ -1,34 +1,21 @@
-//! How a branch bends under drag, and how fast it sways: beam theory and Rayleigh's method.
+//! How a branch bends under drag, and how it would sway if all that it carries were rigid.
 
-use super::branches::{LoadedBranch, Lump};
-use crate::{
-    dynamics::pose::SLOPE_TIP,
-    tree::{skeleton::Skeleton, species::Species},
+use super::{
+    branches::{LoadedBranch, Lump},
+    hinges::Hinge,
+    statics::{Beyond, influence, softening, winds},
 };
-use std::f64::consts::PI;
+use crate::{dynamics::pose::SLOPE_TIP, tree::skeleton::Skeleton};
+use bevy::math::DVec3;
+use std::f64::consts::TAU;
 
-/// Thickness of bark that bears nothing, as a share of the radius. Single bark thickness of conifers and of oaks is some 3
-/// to 10% of the radius; this is the middle.
-pub(super) const BARK_SHARE: f64 = 0.06;
-/// Radius of the root plate that turns with the stem, in stem radii: for stems of 0.4 m a plate of 2.4 m across, within
-/// the 2 to 3 m of uprooted conifers of that size.
-const ROOT_PLATE_RADII: f64 = 6.0;
-/// Shear modulus of a forest's top soil under sway, Pa: soft moist loam.
-const SOIL_SHEAR_PA: f64 = 1.0e6;
-/// Poisson's ratio of the soil.
-const SOIL_POISSON: f64 = 0.4;
-/// Gravity, m/s^2 (standard).
-pub(super) const GRAVITY_M_S2: f64 = 9.806_65;
-/// Least share of its stiffness that weight leaves a branch. A tree that does not fall over has some, and trees keep about twice
-/// what they need against their own weight (Science 179, 1201, 1973: trees have a quarter of the height at which they would buckle).
-const LEAST_STIFFNESS_SHARE: f64 = 0.5;
-/// Lower loads count as at this height, m: the mean wind is not known there.
-const LEAST_HEIGHT_M: f64 = 0.1;
-/// Bounds of what the deflection of a branch is corrected by: 0.4 for a single cone, whose tip turns far more than it moves.
-const LEAST_TIP_SHARE: f64 = 0.2;
-const MOST_TIP_SHARE: f64 = 2.0;
-/// Stations on a beam at which the moment is taken: the midpoint rule is exact to 0.1% there.
-pub(super) const STATIONS: usize = 12;
+/// Roughness lengths of open country and of land with scattered trees, m ("roughly open" and "rough" in Davenport's
+/// classes; Wieringa 1992, J. Wind Eng. Ind. Aerodyn. 41): the pressure at a load's height is right over both.
+const ROUGHNESS_M: [f64; 2] = [0.1, 0.3];
+
+/// The most that a beam turns for the sake of its tip's place, by what its wood turns: it would be more where the beam points so
+/// that its turn hardly moves the branch's tip.
+const MOST_TURN: f64 = 2.0;
 
 /// What a branch does under load.
 pub(super) struct BranchResponse {
@@ -43,8 +30,6 @@ pub(super) struct BranchSway {
     pub deflections_m: Vec<f64>,
     /// Squares of what turning adds to a lump's motion, sum of `m (r slope)^2`.
     pub turning: f64,
-    /// Deflection under a static load, by what it would be without weight.
-    pub softening: f64,
 }
 
 /// How a beam bends under the drag of all that it carries, and where that is.
@@ -52,100 +37,112 @@ pub(super) struct BranchSway {
 pub(super) struct BeamLoad {
     /// s^2/m^2.
     pub gain: f64,
-    /// Height at which the wind presses as on the whole of it: the mean of its logarithm, m.
+    /// Height at which the wind presses as on the whole of it, m.
     pub height_m: f64,
     /// Standard deviations of its places, in the mean of the two horizontal directions and in height, m.
     pub horizontal_m: f64,
     pub vertical_m: f64,
 }
 
-/// A station of a branch: the middle of a short piece of it.
-pub(super) struct Station {
-    pub middle_m: f64,
-    pub length_m: f64,
-    /// 1 / E I, 1/(N m^2).
-    pub compliance: f64,
-    /// Sine of the elevation: 1 upright, -1 hanging.
-    pub upright: f64,
+impl BranchSway {
+    /// Natural frequency if all that the branch carries were rigid, by Rayleigh's method, Hz.
+    pub fn rigid_hz(&self, branch: &LoadedBranch) -> f64 {
+        let sum = |of: fn(f64) -> f64| -> f64 {
+            branch.lumps.iter().zip(&self.deflections_m).map(|(lump, y)| lump.mass_kg * of(*y)).sum()
+        };
+        (sum(|y| y) / (sum(|y| y * y) + self.turning)).sqrt() / TAU
+    }
 }
 
 impl LoadedBranch {
-    pub fn response(&self, species: &Species, skeleton: &Skeleton) -> BranchResponse {
-        let stations = self.stations(species, skeleton);
-        let root_compliance = self.root_compliance(skeleton);
-        self.response_on_root(&stations, root_compliance)
-    }
-
-    /// The same branch without its leaves.
-    pub fn without_leaves(&self) -> Self {
-        let lumps = self.lumps.iter().filter(|lump| !lump.is_leaf).copied().collect();
-        Self { beams: self.beams.clone(), lumps, direction: self.direction }
-    }
-
-    /// The response of a branch, its lumps in order, on a root that turns by `root_compliance` for 1 N m.
-    pub fn response_on_root(&self, stations: &[Station], root_compliance: f64) -> BranchResponse {
-        let sway = self.sway(stations, root_compliance);
-        let mut loads = self.loads(stations, root_compliance);
-        // Weight pulls further over what the wind has bent, by as much as it makes the branch sway slower.
+    pub fn response(&self, skeleton: &Skeleton) -> BranchResponse {
+        let winds = winds(self);
+        let softening = if self.carrier.is_none() { self.softening(&winds) } else { 1.0 };
+        let mut loads = self.loads(skeleton, &winds);
         for load in &mut loads {
-            load.gain *= sway.softening;
+            load.gain *= softening;
         }
-        BranchResponse { loads, sway }
+        BranchResponse { loads, sway: self.sway() }
+    }
+
+    /// A stem's deflection under the drag, by what it would be without weight.
+    fn softening(&self, winds: &[DVec3]) -> f64 {
+        let mass = Beyond::sums(self, &self.hinges, |lump| [lump.mass_kg]);
+        let drag = Beyond::sums(self, &self.hinges, |lump| [lump.drag_kg_m]);
+        softening(&self.hinges, &drag, &mass, self.tip, winds)
     }
 
     /// The branch's deflection under the forces `m`.
-    fn sway(&self, stations: &[Station], root_compliance: f64) -> BranchSway {
-        let mass_turns = turns(stations, &self.lumps, |lump| [lump.mass_kg]);
-        let moment: f64 = self.lumps.iter().map(|lump| lump.mass_kg * (lump.attach_m + lump.arm_m)).sum();
-        let (mut work, mut weight, mut turning) = (0.0, 0.0, 0.0);
+    fn sway(&self) -> BranchSway {
+        let turns = self.turns();
+        let mut turning = 0.0;
         let mut deflections_m = Vec::with_capacity(self.lumps.len());
-        // Slope, and first moment of the turns, of all stations before the lump.
-        let (mut slope, mut first_moment) = (moment * root_compliance, 0.0);
-        // How far the branch's axis has sunk by leaning, twice: int slope^2 dx, and up to where.
-        let (mut sunk_m, mut reached_m, mut upright) = (0.0, 0.0, stations.first().map_or(0.0, |first| first.upright));
-        let mut ahead = stations.iter().zip(mass_turns).peekable();
+        // Slope, and first moment of the turns, of all hinges before the lump.
+        let (mut slope, mut first_moment) = (0.0, 0.0);
+        let mut ahead = self.hinges.iter().zip(turns).peekable();
         for lump in &self.lumps {
-            while let Some((station, [turn])) = ahead.next_if(|(station, _)| station.middle_m < lump.attach_m) {
-                sunk_m += slope * slope * upright * (station.middle_m - reached_m);
-                (reached_m, upright) = (station.middle_m, station.upright);
+            while let Some((hinge, turn)) = ahead.next_if(|(hinge, _)| hinge.along_m < lump.attach_m) {
                 slope += turn;
-                first_moment += turn * station.middle_m;
+                first_moment += turn * hinge.along_m;
             }
-            let deflection = slope * (lump.attach_m + lump.arm_m) - first_moment;
-            work += lump.mass_kg * deflection;
+            deflections_m.push(slope * (lump.attach_m + lump.arm_m) - first_moment);
             turning += lump.mass_kg * (lump.beside_m * slope).powi(2);
-            deflections_m.push(deflection);
-            let sinks_m = sunk_m + slope * slope * upright * (lump.attach_m + lump.arm_m - reached_m);
-            weight += lump.mass_kg * GRAVITY_M_S2 * sinks_m;
         }
-        let stiffness = (work - weight).max(LEAST_STIFFNESS_SHARE * work).max(0.0);
-        let softening = if stiffness > 0.0 { work / stiffness } else { 1.0 };
-        BranchSway { deflections_m, turning, softening }
+        BranchSway { deflections_m, turning }
+    }
+
+    /// By how much each hinge turns under the forces `m`, rad.
+    fn turns(&self) -> Vec<f64> {
+        // Of all lumps that hold on beyond the hinge: mass, and its first moment about the branch's root.
+        let (mut mass, mut first_moment) = (0.0, 0.0);
+        let mut before = self.lumps.iter().rev().peekable();
+        let mut turns: Vec<f64> = self
+            .hinges
+            .iter()
+            .rev()
+            .map(|hinge| {
+                while let Some(lump) = before.next_if(|lump| lump.attach_m > hinge.along_m) {
+                    mass += lump.mass_kg;
+                    first_moment += lump.mass_kg * (lump.attach_m + lump.arm_m);
+                }
+                (first_moment - mass * hinge.along_m) * hinge.bend_compliance
+            })
+            .collect();
+        turns.reverse();
+        turns
     }
 
     /// The bend of each beam under the drag.
-    fn loads(&self, stations: &[Station], root_compliance: f64) -> Vec<BeamLoad> {
-        let station_turns = turns(stations, &self.lumps, load_moments);
-        let mut beams: Vec<[f64; MOMENTS]> = station_turns
-            .chunks(STATIONS)
-            .map(|beam| beam.iter().fold([0.0; MOMENTS], |sum, turn| add(sum, *turn)))
-            .collect();
-        // The roots' turn is taken into the bend of the lowest beam.
-        let root_turn = self.lumps.iter().fold([0.0; MOMENTS], |sum, lump| {
-            let arm = root_compliance * (lump.attach_m + lump.arm_m);
-            add(sum, load_moments(lump).map(|moment| moment * arm))
-        });
-        if let Some(lowest) = beams.first_mut() {
-            *lowest = add(*lowest, root_turn);
+    ///
+    /// Beams are posed along the first mode of a beam with a free tip, whose deflection is right for one turn only: each is bent by as
+    /// much as moves the branch's tip as far as its hinges do.
+    fn loads(&self, skeleton: &Skeleton, winds: &[DVec3]) -> Vec<BeamLoad> {
+        let sums = Beyond::sums(self, &self.hinges, load_moments);
+        let mut moved = vec![[0.0; MOMENTS]; self.beams.len()];
+        let mut turned = vec![0.0; self.beams.len()];
+        for (hinge, sum) in self.hinges.iter().zip(&sums) {
+            for &wind in winds {
+                let influence = influence(hinge, self.tip, wind);
+                for (n, moved) in moved[hinge.beam].iter_mut().enumerate() {
+                    *moved += sum.about(hinge.at, n).dot(influence);
+                }
+                turned[hinge.beam] += hinge.turn(sum.about(hinge.at, 0).cross(wind)).length() / winds.len() as f64;
+            }
         }
-        let tip_share = tip_share(stations, &station_turns, &beams, root_turn[0]);
-        beams.iter().map(|moments| BeamLoad::of(moments, tip_share)).collect()
-    }
-
-    /// Turn of the branch's root for 1 N m: branches are clamped, stems stand on their roots.
-    fn root_compliance(&self, skeleton: &Skeleton) -> f64 {
-        let root = &skeleton.beams[self.beams[0] as usize];
-        if root.parent.is_some() { 0.0 } else { 1.0 / root_stiffness_nm_rad(root.base_radius_m) }
+        let posed = |beam: u32| {
+            let beam = &skeleton.beams[beam as usize];
+            let (direction, length_m) = (beam.direction.as_dvec3(), f64::from(beam.length_m));
+            let beyond = self.tip - (beam.base.as_dvec3() + direction * length_m);
+            winds
+                .iter()
+                .map(|&wind| {
+                    let turn = wind.reject_from(direction);
+                    (turn * (length_m / f64::from(SLOPE_TIP)) + direction.cross(turn).cross(beyond)).dot(wind)
+                })
+                .sum::<f64>()
+        };
+        let turns = self.beams.iter().zip(moved).zip(turned);
+        turns.map(|((&beam, moved), turned)| BeamLoad::of(&moved, posed(beam), MOST_TURN * turned)).collect()
     }
 
     /// Radius at a distance from the root, m; beyond its end that of the tip.
@@ -162,111 +159,50 @@ impl LoadedBranch {
         }
         radius_m
     }
-
-    fn stations(&self, species: &Species, skeleton: &Skeleton) -> Vec<Station> {
-        let mut stations = Vec::with_capacity(self.beams.len() * STATIONS);
-        let mut before_m = 0.0;
-        for &index in &self.beams {
-            let beam = &skeleton.beams[index as usize];
-            let length_m = f64::from(beam.length_m) / STATIONS as f64;
-            for station in 0..STATIONS {
-                let s = (station as f32 + 0.5) / STATIONS as f32;
-                let wood_radius_m = (1.0 - BARK_SHARE) * f64::from(beam.radius_m(s));
-                let second_moment_m4 = PI / 4.0 * wood_radius_m.powi(4);
-                stations.push(Station {
-                    middle_m: before_m + (station as f64 + 0.5) * length_m,
-                    length_m,
-                    compliance: 1.0 / (f64::from(species.wood.young_modulus_pa) * second_moment_m4),
-                    upright: f64::from(beam.direction.y),
-                });
-            }
-            before_m += f64::from(beam.length_m);
-        }
-        stations
-    }
 }
 
 /// Number of sums that tell how large a beam's load is, and where.
-const MOMENTS: usize = 7;
+const MOMENTS: usize = 8;
 
-/// A lump's drag, and the moments of its place with the drag as weight: logarithm of the height, the three coordinates, the
-/// square of the horizontal ones, the square of the height.
+/// A lump's drag, and the moments of its place with the drag as weight: the wind's pressure there over two roughnesses, the three
+/// coordinates, the square of the horizontal ones, the square of the height.
 fn load_moments(lump: &Lump) -> [f64; MOMENTS] {
     let [x, y, z] = lump.at.to_array().map(f64::from);
-    [1.0, y.max(LEAST_HEIGHT_M).ln(), x, y, z, x * x + z * z, y * y].map(|moment| lump.drag_kg_m * moment)
-}
-
-fn add(mut sum: [f64; MOMENTS], moments: [f64; MOMENTS]) -> [f64; MOMENTS] {
-    sum.iter_mut().zip(moments).for_each(|(sum, moment)| *sum += moment);
-    sum
+    let [open, rough] = ROUGHNESS_M.map(|roughness_m| (y / roughness_m).max(1.0).ln().powi(2));
+    [1.0, open, rough, x, y, z, x * x + z * z, y * y].map(|moment| lump.drag_kg_m * moment)
 }
 
 impl BeamLoad {
-    /// From the turn that each moment makes, rad.
-    fn of(moments: &[f64; MOMENTS], tip_share: f64) -> Self {
+    /// From how far the tip moves by each moment, m, and for a turn of the beam by 1 rad; and the most that it may turn, rad.
+    fn of(moments: &[f64; MOMENTS], posed_m: f64, most_rad: f64) -> Self {
+        let [drag, open, rough, ..] = *moments;
+        let (height_m, share) = load_height(open / drag, rough / drag);
+        let turn = (drag / posed_m).min(most_rad) * share;
         // Boughs that reach back past their root would bend a beam against the wind: it is kept still instead.
-        if moments[0] <= 0.0 {
+        if !(drag > 0.0 && turn > 0.0) {
             return Self { gain: 0.0, height_m: 0.0, horizontal_m: 0.0, vertical_m: 0.0 };
         }
-        let [log, x, y, z, horizontal, vertical] = [1, 2, 3, 4, 5, 6].map(|moment: usize| moments[moment] / moments[0]);
+        let [x, y, z, horizontal, vertical] = [3, 4, 5, 6, 7].map(|moment: usize| moments[moment] / drag);
         // Of loads on both sides of the root some count as negative: what is left of a spread is at least none.
         let deviation = |variance: f64| variance.max(0.0).sqrt();
         Self {
-            gain: moments[0] * tip_share / f64::from(SLOPE_TIP),
-            height_m: log.exp(),
+            gain: turn / f64::from(SLOPE_TIP),
+            height_m,
             horizontal_m: deviation(0.5 * (horizontal - x * x - z * z)),
             vertical_m: deviation(vertical - y * y),
         }
     }
 }
 
-/// The tip's deflection of a branch over that of its beams as they are posed, each along the first mode of a beam with a
-/// free tip, with these turns. That mode has the right turn at its end, and not quite the right deflection: 3% less under a
-/// uniform load, some 10% more where a chain's moment goes on beyond the beam, and twice as much for a cone.
-fn tip_share(stations: &[Station], station_turns: &[[f64; MOMENTS]], beams: &[[f64; MOMENTS]], root_turn: f64) -> f64 {
-    let lengths_m: Vec<f64> = stations.chunks(STATIONS).map(|beam| beam.iter().map(|s| s.length_m).sum()).collect();
-    let length_m: f64 = lengths_m.iter().sum();
-    let bent: f64 = stations.iter().zip(station_turns).map(|(s, turn)| turn[0] * (length_m - s.middle_m)).sum();
-    let mut beyond_m = length_m;
-    let posed: f64 = beams
-        .iter()
-        .zip(&lengths_m)
-        .map(|(turn, beam_m)| {
-            beyond_m -= beam_m;
-            turn[0].max(0.0) * (beam_m / f64::from(SLOPE_TIP) + beyond_m)
-        })
-        .sum();
-    let share = (bent + root_turn * length_m) / posed;
-    if share.is_finite() { share.clamp(LEAST_TIP_SHARE, MOST_TIP_SHARE) } else { 1.0 }
-}
-
-/// By how much each station's piece turns under transverse forces on every lump, rad, for several sets of forces at once.
-/// Lumps come in the order in which they hold on.
-fn turns<const N: usize>(stations: &[Station], lumps: &[Lump], force: impl Fn(&Lump) -> [f64; N]) -> Vec<[f64; N]> {
-    // Of all lumps that hold on beyond the station: force, and its first moment about the branch's root.
-    let (mut total, mut first_moment) = ([0.0; N], [0.0; N]);
-    let mut before = lumps.iter().rev().peekable();
-    let mut turns: Vec<[f64; N]> = stations
-        .iter()
-        .rev()
-        .map(|station| {
-            while let Some(lump) = before.next_if(|lump| lump.attach_m > station.middle_m) {
-                let arm_m = lump.attach_m + lump.arm_m;
-                for (n, force) in force(lump).into_iter().enumerate() {
-                    total[n] += force;
-                    first_moment[n] += force * arm_m;
-                }
-            }
-            let turn = station.compliance * station.length_m;
-            std::array::from_fn(|n| (first_moment[n] - total[n] * station.middle_m) * turn)
-        })
-        .collect();
-    turns.reverse();
-    turns
-}
-
-/// Rocking stiffness of the roots of a stem, N m/rad.
-fn root_stiffness_nm_rad(base_radius_m: f32) -> f64 {
-    let plate_m = ROOT_PLATE_RADII * f64::from(base_radius_m);
-    8.0 * SOIL_SHEAR_PA * plate_m.powi(3) / (3.0 * (1.0 - SOIL_POISSON))
+/// The height, m, and the share of the drag that must be there for the wind to press as on all of it, with the squares of
+/// `ln (y / z0)` over both roughnesses.
+fn load_height(open: f64, rough: f64) -> (f64, f64) {
+    let [open_m, rough_m] = ROUGHNESS_M;
+    let speed = (rough_m / open_m).ln() / ((open / rough).sqrt() - 1.0);
+    if speed.is_finite() && speed > 0.0 && rough > 0.0 {
+        (rough_m * speed.exp(), rough / (speed * speed))
+    } else {
+        // Hardly any of it is higher than the roughness.
+        (open_m * open.max(0.0).sqrt().exp(), 1.0)
+    }
 }

@@ -2,11 +2,13 @@
 
 use super::{
     branches::{LoadedBranch, Lump},
-    response::{BARK_SHARE, GRAVITY_M_S2, STATIONS, Station},
+    hinges::{BARK_SHARE, Hinge},
+    resonance::resonances_hz,
+    statics::{Beyond, GRAVITY_M_S2, PieceWeight, influence, softening, stands},
     *,
 };
 use crate::tree::individual::grow;
-use bevy::math::Vec3;
+use bevy::math::{DVec3, Vec3};
 use std::f64::consts::TAU;
 
 /// Natural frequency of a row's branch with all that it bears, Hz.
@@ -47,44 +49,142 @@ fn frequencies_fall_while_a_fir_grows_up() {
     assert!(hz.windows(2).all(|pair| pair[0] > pair[1]), "{hz:?}");
 }
 
+/// A branch of hinges and lumps, from the origin to its tip; a stem if nothing carries it.
+fn branch(hinges: Vec<Hinge>, lumps: Vec<Lump>, tip: DVec3) -> LoadedBranch {
+    LoadedBranch {
+        beams: vec![0],
+        lumps,
+        swaying_hinges: hinges.clone(),
+        hinges,
+        direction: tip.normalize().as_vec3(),
+        base: DVec3::ZERO,
+        tip,
+        length_m: tip.length(),
+        bears: true,
+        carrier: None,
+    }
+}
+
+fn lump(attach_m: f64, mass_kg: f64, at: DVec3) -> Lump {
+    Lump {
+        attach_m,
+        arm_m: 0.0,
+        beside_m: 0.0,
+        mass_kg,
+        drag_kg_m: 0.01,
+        at: at.as_vec3(),
+        is_leaf: false,
+        is_own: true,
+        slot: 0,
+    }
+}
+
+/// Hinges of a uniform rod from a place on, so far along the branch.
+fn rod(from: DVec3, direction: DVec3, length_m: f64, before_m: f64, [bend_nm2, twist_nm2]: [f64; 2]) -> Vec<Hinge> {
+    let count = 100;
+    let piece_m = length_m / f64::from(count);
+    let hinge = |index: u32| {
+        let along_m = (f64::from(index) + 0.5) * piece_m;
+        Hinge {
+            along_m: before_m + along_m,
+            at: from + direction * along_m,
+            direction,
+            beam: 0,
+            radius_m: 0.1,
+            bend_compliance: piece_m / bend_nm2,
+            twist_compliance: piece_m / twist_nm2,
+        }
+    };
+    (0..count).map(hinge).collect()
+}
+
 /// A rigid pole of mass m and length L on a spring: w^2 = (k - m g L/2) / (m L^2/3); hanging, the weight stiffens it.
 #[test]
 fn a_rigid_pole_on_its_roots_has_the_frequency_of_an_inverted_pendulum() {
     let (mass_kg, length_m, stiffness) = (50.0, 4.0, 3000.0_f64);
     let count = 200;
-    let lumps = (0..count).map(|index: u32| Lump {
-        attach_m: (f64::from(index) + 0.5) / f64::from(count) * length_m,
-        arm_m: 0.0,
-        beside_m: 0.0,
-        mass_kg: mass_kg / f64::from(count),
-        drag_kg_m: 0.01,
-        at: Vec3::Y,
-        is_leaf: false,
-        slot: index,
-    });
-    let pole = LoadedBranch { beams: vec![0], lumps: lumps.collect(), direction: Vec3::Y };
-    let tree = LoadedTree {
-        branches: vec![pole],
-        branch_of_slot: vec![0; count as usize],
-        first_slots: (0..=count).collect(),
-    };
-    for upright in [1.0, -1.0] {
-        let station = |index: usize| Station {
-            middle_m: (index as f64 + 0.5) / STATIONS as f64 * length_m,
-            length_m: length_m / STATIONS as f64,
-            compliance: 1e-15,
-            upright,
+    for upright in [DVec3::Y, DVec3::NEG_Y] {
+        let lumps = (0..count).map(|index: u32| {
+            let along_m = (f64::from(index) + 0.5) / f64::from(count) * length_m;
+            lump(along_m, mass_kg / f64::from(count), upright * along_m)
+        });
+        let root = Hinge {
+            along_m: 0.0,
+            at: DVec3::ZERO,
+            direction: upright,
+            beam: 0,
+            radius_m: 0.1,
+            bend_compliance: 1.0 / stiffness,
+            twist_compliance: 1.0 / stiffness,
         };
-        let stations: Vec<Station> = (0..STATIONS).map(station).collect();
-        let response = tree.branches[0].response_on_root(&stations, 1.0 / stiffness);
-        let frequency_hz = composite_sways(&tree, &tree.branches, std::slice::from_ref(&response))[0].frequency_hz;
-        let spring = stiffness - upright * mass_kg * GRAVITY_M_S2 * length_m / 2.0;
+        let pole = branch(vec![root], lumps.collect(), upright * length_m);
+        let spring = stiffness - upright.y * mass_kg * GRAVITY_M_S2 * length_m / 2.0;
         let expected_hz = (spring / (mass_kg * length_m * length_m / 3.0)).sqrt() / TAU;
-        assert!((frequency_hz / expected_hz - 1.0).abs() < 1e-3, "{frequency_hz} {expected_hz}");
-        // All drag, at half the length on average, turns the spring, which weight softens: the tip moves by that turn.
-        let turn = 0.01 * f64::from(count) * length_m / 2.0 / spring;
-        assert!((response.loads[0].gain / turn - 1.0).abs() < 1e-3);
+        let [drag, mass] = [|lump: &Lump| [lump.drag_kg_m], |lump: &Lump| [lump.mass_kg]]
+            .map(|weight| Beyond::sums(&pole, &pole.hinges, weight));
+        let softer = softening(&pole.hinges, &drag, &mass, pole.tip, &[DVec3::X]);
+        assert!((softer * spring / stiffness - 1.0).abs() < 1e-6, "{softer}");
+        let responses = [BranchResponse { loads: Vec::new(), sway: pole.sway() }];
+        let hz = resonances_hz(std::slice::from_ref(&pole), &responses)[0].expect("within the frequencies tried");
+        // The peak of a damped resonance, between frequencies that are tried.
+        assert!((hz / expected_hz - 1.0).abs() < 0.02, "{hz} {expected_hz}");
     }
+}
+
+/// An L in a level plane, loaded upright at its tip: both legs bend, and the first is twisted by the second.
+#[test]
+fn a_crooked_branch_bends_and_twists_as_a_bent_cantilever() {
+    let ([a_m, b_m], [bend_nm2, twist_nm2]) = ([2.0, 0.7], [300.0, 40.0]);
+    let (corner, tip) = (DVec3::X * a_m, DVec3::new(a_m, 0.0, b_m));
+    let mut hinges = rod(DVec3::ZERO, DVec3::X, a_m, 0.0, [bend_nm2, twist_nm2]);
+    hinges.extend(rod(corner, DVec3::Z, b_m, a_m, [bend_nm2, twist_nm2]));
+    let bent = branch(hinges, vec![lump(a_m + b_m, 1.0, tip)], tip);
+    let sums = Beyond::sums(&bent, &bent.hinges, |_| [1.0]);
+    let deflection: f64 = bent
+        .hinges
+        .iter()
+        .zip(&sums)
+        .map(|(hinge, sum)| sum.about(hinge.at, 0).dot(influence(hinge, bent.tip, DVec3::Y)))
+        .sum();
+    let expected = (a_m.powi(3) + b_m.powi(3)) / (3.0 * bend_nm2) + a_m * b_m * b_m / twist_nm2;
+    assert!((deflection / expected - 1.0).abs() < 1e-3, "{deflection} {expected}");
+}
+
+/// Timoshenko & Gere (1961): a column buckles under P = pi^2 EI / 4 L^2, a level cantilever tips over sideways under
+/// P = 4.013 sqrt(EI GJ) / L^2 (here it is as stiff upright as sideways, which makes no difference while it is straight).
+#[test]
+fn weight_topples_columns_and_level_branches_at_their_critical_loads() {
+    let ([bend_nm2, twist_nm2], length_m) = ([300.0, 40.0], 2.0_f64);
+    let column_n = std::f64::consts::PI.powi(2) * bend_nm2 / (4.0 * length_m * length_m);
+    let level_n = 4.013 * (bend_nm2 * twist_nm2).sqrt() / (length_m * length_m);
+    for (direction, critical_n) in [(DVec3::Y, column_n), (DVec3::X, level_n)] {
+        let hinges = rod(DVec3::ZERO, direction, length_m, 0.0, [bend_nm2, twist_nm2]);
+        let mass_kg = 0.1 * critical_n / GRAVITY_M_S2;
+        let loaded = branch(hinges, vec![lump(length_m, mass_kg, direction * length_m)], direction * length_m);
+        let weights = PieceWeight::of(&loaded.hinges, &Beyond::sums(&loaded, &loaded.hinges, |lump| [lump.mass_kg]));
+        for (times, is_stable) in [(9.8, true), (10.2, false)] {
+            assert_eq!(stands(&loaded.hinges, &weights, times), is_stable, "{direction} {times}");
+        }
+    }
+}
+
+/// eta^2 sqrt(EI / m) / L^2 for a cantilever of the mass m a metre.
+#[test]
+fn a_uniform_rod_resonates_at_its_natural_frequency() {
+    let (bend_nm2, length_m, mass_kg) = (300.0, 2.0, 1.0);
+    let count = 50;
+    let lumps = (0..count).map(|index: u32| {
+        let along_m = (f64::from(index) + 0.5) / f64::from(count) * length_m;
+        lump(along_m, mass_kg / f64::from(count), DVec3::X * along_m)
+    });
+    let hinges = rod(DVec3::ZERO, DVec3::X, length_m, 0.0, [bend_nm2, 1e3 * bend_nm2]);
+    let rod = branch(hinges, lumps.collect(), DVec3::X * length_m);
+    let rod = LoadedBranch { carrier: Some(branches::Carrier { branch: 0, attach_m: 0.0 }), ..rod };
+    let stem = branch(rod.hinges[..1].to_vec(), Vec::new(), DVec3::Y);
+    let responses = [&stem, &rod].map(|branch| BranchResponse { loads: Vec::new(), sway: branch.sway() });
+    let hz = resonances_hz(&[stem, rod], &responses)[1].expect("within the frequencies tried");
+    let expected_hz = 1.875_104_f64.powi(2) * (bend_nm2 * length_m / mass_kg).sqrt() / (length_m * length_m) / TAU;
+    assert!((hz / expected_hz - 1.0).abs() < 0.02, "{hz} {expected_hz}");
 }
 
 #[test]
