@@ -17,6 +17,7 @@ mod scene;
 mod small;
 #[path = "../support/mod.rs"]
 mod support;
+mod undergrowth;
 mod window;
 
 use clap::Parser;

@@ -10,7 +10,7 @@ use crate::{
         options::SceneOptions,
         scene::Scene,
     },
-    window,
+    undergrowth, window,
 };
 use bevy::prelude::*;
 use bevy_windwood::{prelude::*, scatter::ForestPlan};
@@ -103,6 +103,7 @@ fn spawn_scene(
     } else {
         let places = small::places(landscape, options.trees, options.scene.wind.seed);
         small::spawn_trees(&mut commands, &assets, &places);
+        undergrowth::spawn_undergrowth(&mut commands, &mut plans, landscape, options.trees, options.scene.wind.seed);
         meadow::spawn_meadow(&mut commands, landscape, options.trees, options.scene.wind.seed);
     }
     let finest_cell_m = FINEST_CELL_M;
