@@ -1,7 +1,7 @@
 //! Where the header of a table is, and which two columns have the places.
 
 use super::{
-    names::{Unit, column_named, has_degrees, known_pair, split},
+    names::{Unit, column_named, has_degrees, known_pair, length_m, split},
     number::parse,
     separator::Separator,
 };
@@ -16,15 +16,17 @@ pub struct Row {
 /// How a table is laid out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
-    /// Rows above the first with data: titles, and the header.
+    /// Rows above the first with data: titles, and then the header.
     pub rows_above: usize,
+    /// The last of them, which are the header: names, and perhaps a row of units.
+    pub header_rows: usize,
     /// Columns of x and y, from 0.
     pub columns: [usize; 2],
     /// Metres in a unit of x and of y.
     pub units_m: [f64; 2],
     /// Fields of the header, where there is one.
     pub fields: Option<usize>,
-    /// Whether the last of the rows above is a header.
+    /// What should be known of them.
     pub notes: Vec<Note>,
 }
 
@@ -59,13 +61,23 @@ impl Layout {
             return Err(format!("line {}: x and y are the same column, `{}`", header.line, header.fields[columns[0]]));
         }
         let mut notes = Vec::new();
-        let units_m = columns.map(|column| unit_m(&header.fields[column], &mut notes));
+        // Loggers and field books have a row of units below that of the names.
+        let row_below =
+            head.get(index + 1).map(|row| columns.map(|column| row.fields.get(column).and_then(|unit| length_m(unit))));
+        let has_row_of_units = matches!(row_below, Some([Some(_), Some(_)]));
+        let name = |column: usize| {
+            let name = &header.fields[column];
+            if has_row_of_units { format!("{name} ({})", head[index + 1].fields[column]) } else { name.clone() }
+        };
+        let units_m = columns.map(|column| unit_m(&name(column), &mut notes));
+        let first = index + 1 + usize::from(has_row_of_units);
         let [Some(x_m), Some(y_m)] = units_m else {
             return Err(format!("line {}: the columns have degrees, but must have lengths", header.line));
         };
-        let row_names = usize::from(has_row_names(header, &head[index + 1..]));
+        let row_names = usize::from(has_row_names(header, &head[first..]));
         Ok(Self {
-            rows_above: index + 1,
+            rows_above: first,
+            header_rows: first - index,
             columns: columns.map(|column| column + row_names),
             units_m: [x_m, y_m],
             fields: Some(header.fields.len() + row_names),
@@ -101,7 +113,14 @@ impl Layout {
                 data[0].line
             ));
         }
-        Ok(Self { rows_above: first, columns: [0, 1], units_m: [1.0, 1.0], fields: None, notes: Vec::new() })
+        Ok(Self {
+            rows_above: first,
+            header_rows: 0,
+            columns: [0, 1],
+            units_m: [1.0, 1.0],
+            fields: None,
+            notes: Vec::new(),
+        })
     }
 }
 
@@ -120,7 +139,14 @@ fn wanted_columns(head: &[Row], wanted: &[String; 2]) -> Result<Layout, String> 
         if x == y {
             return Err(format!("x and y are the same column, {}", wanted[0]));
         }
-        return Ok(Layout { rows_above, columns: [x, y], units_m: [1.0, 1.0], fields: None, notes: Vec::new() });
+        return Ok(Layout {
+            rows_above,
+            header_rows: 0,
+            columns: [x, y],
+            units_m: [1.0, 1.0],
+            fields: None,
+            notes: Vec::new(),
+        });
     }
     let there = head.first().map_or(String::new(), |row| row.fields.join("`, `"));
     Err(format!("no row has the columns `{}` and `{}`; the first row has `{there:.200}`", wanted[0], wanted[1]))

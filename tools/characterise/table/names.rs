@@ -88,8 +88,9 @@ pub fn split(name: &str) -> (String, Unit) {
     (plain(&name), Unit::Unsaid)
 }
 
-fn length_m(unit: &str) -> Option<f64> {
-    UNITS.iter().find(|(name, _)| *name == unit).map(|(_, length_m)| *length_m)
+/// Metres of a unit of length.
+pub fn length_m(unit: &str) -> Option<f64> {
+    UNITS.iter().find(|(name, _)| unit.eq_ignore_ascii_case(name)).map(|(_, length_m)| *length_m)
 }
 
 fn plain(name: &str) -> String {

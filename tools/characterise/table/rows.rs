@@ -88,10 +88,9 @@ impl<'a> Reading<'a> {
         Self { layout, separator, points: Vec::new(), titles, empty, without_place, marks: [None, None] }
     }
 
-    /// A title, or the header.
+    /// A title, or a row of the header.
     fn above(&mut self, index: usize, text: &str, record: &StringRecord) -> Result<Option<DVec2>, String> {
-        let is_header = self.layout.fields.is_some() && index + 1 == self.layout.rows_above;
-        if !is_header {
+        if index + self.layout.header_rows < self.layout.rows_above {
             self.titles.push(line(text, record));
         }
         Ok(None)

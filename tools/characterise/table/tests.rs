@@ -170,6 +170,7 @@ fn lengths_are_those_of_the_header() {
     let table = read_table(b"x (ft),y [cm]\n10,250\n20,300\n", None, |_| Ok(())).unwrap();
     assert_eq!(table.points[0], DVec2::new(10.0 * 0.3048, 2.5));
     assert!(table.notes[0].text.contains("the unit of the column `x (ft)` is 0.3048 m"), "{:?}", table.notes);
+    assert_eq!(read("plot 3\nid;x;y\n;M;cm\n1;1,5;-200\n2;300;425\n"), Ok(two_places()));
     let table = read_table(b"x (OSGB),y (OSGB)\n10,250\n20,300\n", None, |_| Ok(())).unwrap();
     assert!(table.notes[0].is_warning && table.notes[0].text.contains("metres were taken"), "{:?}", table.notes);
 }
