@@ -42,7 +42,7 @@ pub(super) enum Planting {
 pub(super) struct NearTrees {
     pub(super) cell_m: f32,
     /// Cells along a side of a tile.
-    tile_cells: i32,
+    pub(super) tile_cells: i32,
     stream: CellStream,
     orders: Orders,
     pub(super) planting: Vec<(IVec2, Planting)>,

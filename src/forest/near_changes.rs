@@ -55,13 +55,18 @@ impl NearTrees {
         self.drawn_changes += 1;
     }
 
-    /// Takes what is known of a tile for out of date: a cell of it that is being planted alone is planted again.
+    /// Takes what is known of a tile for out of date: cells that are awaited from it, or from a task that has begun, are planted again.
     pub fn replant_awaited(&mut self, tile: IVec2, cell: IVec2, plant: impl Fn(IVec2) -> Option<CellTask>) {
-        self.tiles.remove(&tile);
-        let alone =
-            self.planting.iter_mut().find(|(other, source)| *other == cell && matches!(source, Planting::Alone(_)));
-        if let Some((_, source)) = alone {
-            *source = plant(cell).map_or(Planting::Tile, Planting::Alone);
+        let had_tile = self.tiles.remove(&tile).is_some();
+        for (other, source) in &mut self.planting {
+            let is_out_of_date = match source {
+                Planting::Alone(_) => *other == cell,
+                // Its tile was there, and comes again only if it has to be planted again.
+                Planting::Tile => had_tile && other.div_euclid(IVec2::splat(self.tile_cells)) == tile,
+            };
+            if is_out_of_date {
+                *source = plant(*other).map_or(Planting::Tile, Planting::Alone);
+            }
         }
     }
 

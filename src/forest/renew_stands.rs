@@ -1,10 +1,17 @@
 //! The wind among the trees of a forest follows its changes.
 
-use super::{cells::ForestCells, stand::Stand, stand_changes::balances};
+use super::{
+    cells::ForestCells,
+    change_index::TileChanges,
+    stand::{Stand, StandSpecies},
+    stand_changes::CellBalances,
+};
+use crate::{ground::Ground, scatter::Planter};
 use bevy::{
     prelude::*,
     tasks::{AsyncComputeTaskPool, block_on, poll_once},
 };
+use std::sync::Arc;
 
 /// From one renewal to the next there are at least so many frames: where much is felled, not each tree has the wind worked out again.
 const FRAMES_BETWEEN: u32 = 30;
@@ -31,4 +38,31 @@ pub(super) fn renew_stands(mut frames: Local<u32>, mut forests: Query<&mut Fores
             Stand { planter, ground, species, balances }
         }));
     }
+}
+
+/// Sums the changes of tiles up. Cells in which something was felled are planted, to know how many stems there were: some ten microseconds
+/// each.
+fn balances(
+    tiles: &[Arc<TileChanges>],
+    planter: &Planter,
+    ground: &impl Ground,
+    species: &[Option<StandSpecies>],
+) -> CellBalances {
+    let mut balances = CellBalances::default();
+    let mut plants = Vec::new();
+    for tile in tiles {
+        for (cell, felled) in tile.felled_by_cell(f64::from(planter.cell_m())) {
+            planter.plant(cell, ground, &mut plants);
+            let stems = plants.len().max(1) as f32;
+            balances.entry(cell).or_default().left = 1.0 - (felled as f32).min(stems) / stems;
+        }
+        for (cell, number, age_years) in tile.planted() {
+            let Some(Some(species)) = species.get(usize::from(number)) else { continue };
+            let (area_m2, height_m) = species.tree_at(age_years);
+            let balance = balances.entry(cell).or_default();
+            balance.added_m2 += area_m2;
+            balance.added_m3 += area_m2 * height_m;
+        }
+    }
+    balances
 }
