@@ -24,6 +24,7 @@
 //! drag of a beam is, in height and in spread, is weighed by how much it bends that beam: that decides how much of the mean
 //! wind and of its gusts the beam feels (`dynamics::beam`). All this is worked out twice, with leaves and without.
 
+mod articulated;
 mod branches;
 mod composite;
 mod four;

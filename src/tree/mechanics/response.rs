@@ -2,7 +2,6 @@
 
 use super::{
     branches::{LoadedBranch, Lump},
-    hinges::Hinge,
     statics::{Beyond, influence, softening, winds},
 };
 use crate::{dynamics::pose::SLOPE_TIP, tree::skeleton::Skeleton};
