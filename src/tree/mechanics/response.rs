@@ -72,7 +72,7 @@ impl LoadedBranch {
     }
 
     /// The branch's deflection under the forces `m`.
-    fn sway(&self) -> BranchSway {
+    pub fn sway(&self) -> BranchSway {
         let turns = self.turns();
         let mut turning = 0.0;
         let mut deflections_m = Vec::with_capacity(self.lumps.len());
