@@ -81,7 +81,8 @@ impl LoadedBranch {
             let swaying = SWAYING_HINGES.div_ceil(self.beams.len()).max(LEAST_SWAYING_HINGES);
             (self.hinges, self.swaying_hinges) = (counted(BENDING_HINGES), counted(swaying));
         } else {
-            (self.hinges, self.swaying_hinges) = (counted(TWIG_HINGES), counted(SWAYING_TWIG_HINGES.div_ceil(self.beams.len())));
+            (self.hinges, self.swaying_hinges) =
+                (counted(TWIG_HINGES), counted(SWAYING_TWIG_HINGES.div_ceil(self.beams.len())));
         }
     }
 }
