@@ -5,7 +5,7 @@
 //! beam beyond which `n` of the tree's `N` leaf clusters lie has the radius `R (n / N)^(1/e)`, `R` the trunk's.
 //!
 //! A trunk so keeps what real ones have: with its leaves it could bear 5 to 70 times its weight before it would buckle, which
-//! is 2 to 4 times its height (McMahon 1973, Science 179, 1201: a quarter of the critical height).
+//! is 1.7 to 4 times its height (McMahon 1973, Science 179, 1201: a quarter of the critical height).
 
 use crate::tree::skeleton::{LeafCluster, SkeletonBeam, continuations};
 

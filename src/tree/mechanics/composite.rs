@@ -15,7 +15,7 @@
 use super::{
     branches::{LoadedBranch, LoadedTree},
     resonance::resonances_hz,
-    response::{BranchResponse, BranchSway},
+    response::BranchResponse,
 };
 use bevy::math::{DVec3, Vec3};
 use std::f64::consts::TAU;

@@ -33,7 +33,7 @@ const BENDING_HINGES: usize = 12;
 /// The same for its sway, of the whole branch, and of each beam at least.
 const SWAYING_HINGES: usize = 6;
 const LEAST_SWAYING_HINGES: usize = 2;
-/// Hinges of a beam of a branch that bears leaves alone, for its bend and for its sway.
+/// Hinges of a beam of a branch that bears leaves alone, for its bend, and of the whole branch for its sway.
 const TWIG_HINGES: usize = 4;
 const SWAYING_TWIG_HINGES: usize = 2;
 
@@ -81,7 +81,8 @@ impl LoadedBranch {
             let swaying = SWAYING_HINGES.div_ceil(self.beams.len()).max(LEAST_SWAYING_HINGES);
             (self.hinges, self.swaying_hinges) = (counted(BENDING_HINGES), counted(swaying));
         } else {
-            (self.hinges, self.swaying_hinges) = (counted(TWIG_HINGES), counted(SWAYING_TWIG_HINGES));
+            (self.hinges, self.swaying_hinges) =
+                (counted(TWIG_HINGES), counted(SWAYING_TWIG_HINGES.div_ceil(self.beams.len())));
         }
     }
 }

@@ -16,14 +16,15 @@
 //! of a branch sway with its frequency. Without what it bears a trunk would sway much faster (80% of the crown must go
 //! before it shows: Moore & Maguire 2004).
 //!
-//! Weight pulls over what leans: it makes stems bend further, and stems and branches sway slower, or faster where they hang. How far a
-//! branch bends is worked out without its own weight.
+//! Weight pulls over what leans, and holds what hangs: stems and twigs bend further by it, or less, and all branches sway slower, or faster.
+//! How far a branch that bears others bends is worked out without its own weight.
 //!
 //! A beam's turn is such that it moves the tip of its branch, along the wind, as far as its wood does by bending and twisting. What it cannot do
 //! is move it out of that direction, as the twist of a crooked branch does. Where the
 //! drag of a beam is, in height and in spread, is weighed by how much it bends that beam: that decides how much of the mean
 //! wind and of its gusts the beam feels (`dynamics::beam`). All this is worked out twice, with leaves and without.
 
+mod articulated;
 mod branches;
 mod composite;
 mod four;

@@ -26,16 +26,14 @@
 //! that is one peak again.
 
 use super::{
-    branches::{LoadedBranch, Lump},
-    four::{
-        Four, Matrix, Vector, add, cross, dot, inverse, subtract, subtracted, symmetric_times_transposed, times,
-        times_transposed, transposed,
-    },
+    articulated::{Articulated, Piece, Probe},
+    branches::LoadedBranch,
+    four::{Four, add, cross},
     hinges::Hinge,
     response::BranchResponse,
     statics::{Beyond, PieceWeight, winds},
 };
-use bevy::math::{DVec3, Mat3, Vec3, Vec4};
+use bevy::math::{DVec3, Vec3, Vec4};
 use std::f64::consts::TAU;
 
 /// Damping ratio of the peaks, that of branches in a moderate wind: what is nearer together than some 15% is one peak.
@@ -98,38 +96,6 @@ fn peak(lags: &[f32]) -> Option<f64> {
     let curvature = before - 2.0 * lags[highest] + after;
     let off = 0.5 * (before - after) / curvature;
     (off.is_finite() && lags[highest] > 0.0).then(|| ratio(highest as f64 + f64::from(off)))
-}
-
-/// What is beyond a place, as one body. Forces, moments and turns are about that place.
-#[derive(Clone, Copy, Debug, Default)]
-struct Articulated {
-    force: Matrix,
-    coupling: Matrix,
-    turn: Matrix,
-    /// Forces and moments of the wind along x and along z.
-    loads: [[Vector; 2]; 2],
-}
-
-/// The rigid piece beyond a hinge, with the lumps that it bears itself.
-#[derive(Clone, Copy)]
-struct Piece {
-    /// The hinge, and from there to the hinge or to the root before.
-    at: DVec3,
-    arm: Vec3,
-    direction: Vec3,
-    bend: f32,
-    twist: f32,
-    /// What weight adds to its stiffness, and half the moment of the weight.
-    weight: Mat3,
-    half_moment: Vec3,
-    mass: f32,
-    moment: Vec3,
-    /// xx, yy, zz, xy, xz, yz.
-    inertia: [f32; 6],
-    drag: f32,
-    drag_moment: Vec3,
-    /// The first of the branches that it bears.
-    first_child: Option<u32>,
 }
 
 /// A branch's place where it grows, its pieces and its sensor.
@@ -234,167 +200,6 @@ impl Bodies {
     }
 }
 
-/// How far a place on a branch moves along a wind: by what the hinges beyond the one that is reached do, and by the motion of the
-/// piece there.
-#[derive(Clone, Copy)]
-struct Probe {
-    wind: Vec3,
-    moved: Four,
-    force: Vector,
-    moment: Vector,
-}
-
-impl Probe {
-    fn new(wind: Vec3, arm: Vec3) -> Self {
-        let constant = |vector: Vec3| vector.to_array().map(Four::real);
-        Self { wind, moved: Four::ZERO, force: constant(wind), moment: constant(arm.cross(wind)) }
-    }
-
-    fn release(&mut self, body: &Articulated, compliance: &Matrix, coupled: &Matrix) {
-        let load: Vector =
-            std::array::from_fn(|n| body.loads[0][1][n] * self.wind.x + body.loads[1][1][n] * self.wind.z);
-        let turned = times(compliance, &self.moment);
-        self.moved += dot(&turned, &load);
-        subtract(&mut self.force, &times(&body.coupling, &turned));
-        subtract(&mut self.moment, &times(coupled, &turned));
-    }
-}
-
-impl Articulated {
-    fn add(&mut self, other: &Self) {
-        for row in 0..3 {
-            add(&mut self.force[row], &other.force[row]);
-            add(&mut self.coupling[row], &other.coupling[row]);
-            add(&mut self.turn[row], &other.turn[row]);
-        }
-        for (load, other) in self.loads.iter_mut().zip(&other.loads) {
-            add(&mut load[0], &other[0]);
-            add(&mut load[1], &other[1]);
-        }
-    }
-
-    /// Tells the same about a place from which this one's is an `arm` away.
-    fn move_back(&mut self, arm: Vec3) {
-        // Columns of the old coupling and of the new one, both crossed with the arm.
-        let before = transposed(&self.coupling).map(|column| cross(arm, &column));
-        for (coupling, force) in self.coupling.iter_mut().zip(&self.force) {
-            add(coupling, &cross(arm, force));
-        }
-        let after = transposed(&self.coupling).map(|column| cross(arm, &column));
-        for row in 0..3 {
-            for column in 0..3 {
-                self.turn[row][column] += after[column][row] + before[row][column];
-            }
-        }
-        for [force, moment] in &mut self.loads {
-            add(moment, &cross(arm, force));
-        }
-    }
-
-    /// What weight adds to the stiffness.
-    fn weigh(&mut self, piece: &Piece) {
-        for row in 0..3 {
-            for column in 0..3 {
-                self.turn[row][column].re += piece.weight.col(column)[row];
-            }
-        }
-    }
-
-    /// How the turn of the piece before the hinge is coupled with that of the hinge, by weight as well.
-    fn coupled(&self, piece: &Piece) -> Matrix {
-        let half = piece.half_moment;
-        let halves = [[0.0, -half.z, half.y], [half.z, 0.0, -half.x], [-half.y, half.x, 0.0]];
-        let mut coupled = self.turn;
-        for row in 0..3 {
-            for column in 0..3 {
-                coupled[row][column].re += halves[row][column];
-            }
-        }
-        coupled
-    }
-
-    /// Turn of the hinge under a moment.
-    fn compliance(&self, piece: &Piece) -> Matrix {
-        let (along, bend, twist) = (piece.direction.to_array(), piece.bend, piece.twist - piece.bend);
-        let mut stiff = self.turn;
-        for row in 0..3 {
-            stiff[row][row].re += bend;
-            for column in 0..3 {
-                stiff[row][column].re += twist * along[row] * along[column];
-            }
-        }
-        inverse(&stiff)
-    }
-
-    /// Lets the body turn about the hinge that bears it, given the hinge's compliance and what couples it.
-    fn release(&mut self, compliance: &Matrix, coupled: &Matrix) {
-        let by_force = times_transposed(&self.coupling, compliance);
-        let by_turn = times_transposed(coupled, compliance);
-        for [force, moment] in &mut self.loads {
-            subtract(force, &times(&by_force, moment));
-            *moment = subtracted(moment, &times(&by_turn, moment));
-        }
-        let forces = symmetric_times_transposed(&by_force, &self.coupling);
-        let couplings = times_transposed(&by_force, coupled);
-        let turns = symmetric_times_transposed(&by_turn, coupled);
-        for row in 0..3 {
-            subtract(&mut self.force[row], &forces[row]);
-            subtract(&mut self.coupling[row], &couplings[row]);
-            subtract(&mut self.turn[row], &turns[row]);
-        }
-    }
-
-    /// The same for a piece without weight, for which `1 - R S = K S`.
-    fn release_weightless(&mut self, piece: &Piece) {
-        let compliance = self.compliance(piece);
-        let (along, bend, twist) = (piece.direction.to_array(), piece.bend, piece.twist - piece.bend);
-        let along_compliance: Vector = std::array::from_fn(|column| {
-            let [x, y, z] = compliance[column];
-            x * along[0] + y * along[1] + z * along[2]
-        });
-        let kept: Matrix = std::array::from_fn(|row| {
-            std::array::from_fn(|column| {
-                compliance[row][column] * bend + along_compliance[column] * (twist * along[row])
-            })
-        });
-        let by_force = times_transposed(&self.coupling, &compliance);
-        for [force, moment] in &mut self.loads {
-            subtract(force, &times(&by_force, moment));
-            *moment = times(&kept, moment);
-        }
-        let forces = symmetric_times_transposed(&by_force, &self.coupling);
-        for row in 0..3 {
-            subtract(&mut self.force[row], &forces[row]);
-        }
-        self.coupling = times_transposed(&self.coupling, &kept);
-        self.turn = symmetric_times_transposed(&self.turn, &kept);
-    }
-}
-
-impl Piece {
-    /// Adds the inertia and the drag of what it bears itself.
-    fn add_to(&self, body: &mut Articulated, z: Four) {
-        let [xx, yy, zz, xy, xz, yz] = self.inertia;
-        let m = self.moment;
-        let inertia = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-        let moment = [[0.0, m.z, -m.y], [-m.z, 0.0, m.x], [m.y, -m.x, 0.0]];
-        for row in 0..3 {
-            body.force[row][row] -= z * self.mass;
-            for column in 0..3 {
-                body.coupling[row][column] -= z * moment[row][column];
-                body.turn[row][column] -= z * inertia[row][column];
-            }
-        }
-        for (load, wind) in body.loads.iter_mut().zip([Vec3::X, Vec3::Z]) {
-            let turning = self.drag_moment.cross(wind).to_array();
-            for n in 0..3 {
-                load[0][n].re += self.drag * wind[n];
-                load[1][n].re += turning[n];
-            }
-        }
-    }
-}
-
 /// The piece at a place: the last hinge before it. What is before the first hinge counts as beyond it.
 fn piece_at(hinges: &[Hinge], along_m: f64) -> usize {
     hinges.partition_point(|hinge| hinge.along_m < along_m).saturating_sub(1)
@@ -417,36 +222,4 @@ fn pieces_of(branch: &LoadedBranch) -> Vec<Piece> {
         pieces[piece_at(&branch.swaying_hinges, lump.attach_m)].bear(lump);
     }
     pieces
-}
-
-impl Piece {
-    fn new(hinge: &Hinge, before: DVec3, weight: PieceWeight) -> Self {
-        Self {
-            at: hinge.at,
-            arm: (hinge.at - before).as_vec3(),
-            direction: hinge.direction.as_vec3(),
-            bend: hinge.bend_compliance.recip() as f32,
-            twist: hinge.twist_compliance.recip() as f32,
-            weight: weight.stiffness.as_mat3(),
-            half_moment: (weight.moment_nm * 0.5).as_vec3(),
-            mass: 0.0,
-            moment: Vec3::ZERO,
-            inertia: [0.0; 6],
-            drag: 0.0,
-            drag_moment: Vec3::ZERO,
-            first_child: None,
-        }
-    }
-
-    fn bear(&mut self, lump: &Lump) {
-        let (mass, drag) = (lump.mass_kg as f32, lump.drag_kg_m as f32);
-        let r = (lump.at.as_dvec3() - self.at).as_vec3();
-        self.mass += mass;
-        self.moment += r * mass;
-        self.drag += drag;
-        self.drag_moment += r * drag;
-        let products =
-            [r.y * r.y + r.z * r.z, r.x * r.x + r.z * r.z, r.x * r.x + r.y * r.y, -r.x * r.y, -r.x * r.z, -r.y * r.z];
-        self.inertia.iter_mut().zip(products).for_each(|(inertia, product)| *inertia += mass * product);
-    }
 }

@@ -2,7 +2,6 @@
 
 use super::{
     branches::{LoadedBranch, Lump},
-    hinges::Hinge,
     statics::{Beyond, influence, softening, winds},
 };
 use crate::{dynamics::pose::SLOPE_TIP, tree::skeleton::Skeleton};
@@ -30,6 +29,8 @@ pub(super) struct BranchSway {
     pub deflections_m: Vec<f64>,
     /// Squares of what turning adds to a lump's motion, sum of `m (r slope)^2`.
     pub turning: f64,
+    /// Deflection under the drag, by what it would be without weight; 1 where weight is left out.
+    pub softening: f64,
 }
 
 /// How a beam bends under the drag of all that it carries, and where that is.
@@ -50,22 +51,24 @@ impl BranchSway {
         let sum = |of: fn(f64) -> f64| -> f64 {
             branch.lumps.iter().zip(&self.deflections_m).map(|(lump, y)| lump.mass_kg * of(*y)).sum()
         };
-        (sum(|y| y) / (sum(|y| y * y) + self.turning)).sqrt() / TAU
+        (sum(|y| y) / self.softening / (sum(|y| y * y) + self.turning)).sqrt() / TAU
     }
 }
 
 impl LoadedBranch {
     pub fn response(&self, skeleton: &Skeleton) -> BranchResponse {
         let winds = winds(self);
-        let softening = if self.carrier.is_none() { self.softening(&winds) } else { 1.0 };
+        // Limp twigs hang by their weight. That of branches which bear others is left out.
+        let is_weighed = self.carrier.is_none() || !self.bears;
+        let softening = if is_weighed { self.softening(&winds) } else { 1.0 };
         let mut loads = self.loads(skeleton, &winds);
         for load in &mut loads {
             load.gain *= softening;
         }
-        BranchResponse { loads, sway: self.sway() }
+        BranchResponse { loads, sway: BranchSway { softening, ..self.sway() } }
     }
 
-    /// A stem's deflection under the drag, by what it would be without weight.
+    /// Deflection under the drag, by what it would be without weight.
     fn softening(&self, winds: &[DVec3]) -> f64 {
         let mass = Beyond::sums(self, &self.hinges, |lump| [lump.mass_kg]);
         let drag = Beyond::sums(self, &self.hinges, |lump| [lump.drag_kg_m]);
@@ -73,7 +76,7 @@ impl LoadedBranch {
     }
 
     /// The branch's deflection under the forces `m`.
-    fn sway(&self) -> BranchSway {
+    pub fn sway(&self) -> BranchSway {
         let turns = self.turns();
         let mut turning = 0.0;
         let mut deflections_m = Vec::with_capacity(self.lumps.len());
@@ -88,7 +91,7 @@ impl LoadedBranch {
             deflections_m.push(slope * (lump.attach_m + lump.arm_m) - first_moment);
             turning += lump.mass_kg * (lump.beside_m * slope).powi(2);
         }
-        BranchSway { deflections_m, turning }
+        BranchSway { deflections_m, turning, softening: 1.0 }
     }
 
     /// By how much each hinge turns under the forces `m`, rad.
