@@ -61,7 +61,13 @@ pub fn plan(options: &Options, extent_m: f32) -> ForestPlan {
     let houses = HOUSES.iter().map(|&(centre_m, size_m, _, turn_deg)| KeepOut::House { centre_m, size_m, turn_deg });
     let meadow = KeepOut::Disc { centre_m: [0.0; 2], radius_m: MEADOW_M };
     let cell_m = (TREES_PER_CELL / per_m2).sqrt().clamp(32.0, 512.0);
-    ForestPlan { seed: options.scene.wind.seed, cell_m, areas: vec![area], keep_out: houses.chain([meadow]).collect() }
+    ForestPlan {
+        seed: options.scene.wind.seed,
+        cell_m,
+        areas: vec![area],
+        keep_out: houses.chain([meadow]).collect(),
+        ..default()
+    }
 }
 
 /// The forest as a colour of the ground, for where no tree is drawn.
