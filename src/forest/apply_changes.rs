@@ -1,8 +1,8 @@
 //! Takes the changes of forests over.
 
 use super::{
-    cells::ForestCells, changed_cells::FelledStem, changes::ForestChanges, falling::FallingTree, journal::Journal,
-    messages::TreeFelled, stem_id::StemId,
+    cells::ForestCells, change_index::ChangeIndex, changed_cells::FelledStem, changes::ForestChanges,
+    falling::FallingTree, journal::Journal, messages::TreeFelled, stem_id::StemId,
 };
 #[cfg(feature = "render")]
 use crate::render::instances::components::HasImpostor;
@@ -17,7 +17,7 @@ pub(super) fn apply_changes(
     mut felled: MessageWriter<TreeFelled>,
 ) {
     for (forest, mut cells, changes) in &mut forests {
-        let knows_none = cells.changes.as_ref().is_none_or(|index| index.is_empty());
+        let knows_none = cells.changes.as_ref().is_none_or(ChangeIndex::is_empty);
         let has_begun = cells.changes.is_none();
         let stems = match changes {
             Some(mut changes) if has_begun || changes.is_changed() => {

@@ -98,8 +98,8 @@ fn heavy_side(masses: impl Iterator<Item = (Vec3, f64)>) -> Vec2 {
 
 /// Radius of the stem at a height above its foot, m.
 fn radius_at(skeleton: &Skeleton, height_m: f32) -> f32 {
-    let stem = skeleton.beams.iter().filter(|beam| beam.order == 0);
-    let at_height = stem.filter(|beam| beam.base.y <= height_m).last().or(skeleton.beams.first());
+    let at_height = skeleton.beams.iter().rfind(|beam| beam.order == 0 && beam.base.y <= height_m);
+    let at_height = at_height.or(skeleton.beams.first());
     at_height.map_or(0.1, |beam| beam.radius_m(((height_m - beam.base.y) / beam.length_m.max(1e-3)).clamp(0.0, 1.0)))
 }
 
