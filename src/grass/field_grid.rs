@@ -35,7 +35,7 @@ pub(super) fn patches_within(side_m: Vec2, place_m: Vec2, reach_m: f32) -> impl 
     square.filter(move |patch| patch.distance_m(side_m, place_m) < reach_m)
 }
 
-/// The finaliser of `SplitMix64` (Steele, Lea & Flood 2014): neighbours on the grid have unlike seeds.
+/// The finaliser of SplitMix64 (Steele, Lea & Flood 2014): neighbours on the grid have unlike seeds.
 fn scrambled(value: u64) -> u64 {
     let value = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let value = (value ^ (value >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -178,8 +178,8 @@ impl Articulated {
             *moment = times(&kept, moment);
         }
         let forces = symmetric_times_transposed(&by_force, &self.coupling);
-        for row in 0..3 {
-            subtract(&mut self.force[row], &forces[row]);
+        for (own, taken) in self.force.iter_mut().zip(&forces) {
+            subtract(own, taken);
         }
         self.coupling = times_transposed(&self.coupling, &kept);
         self.turn = symmetric_times_transposed(&self.turn, &kept);
