@@ -110,12 +110,12 @@ mod tests {
             depth: 0.0,
             tint: 0.0,
         };
-        let clusters: Vec<LeafCluster> = std::iter::once(0).chain([1; 100]).chain([2; 100]).map(leaf).collect();
+        let clusters: Vec<LeafCluster> = std::iter::once(0).chain([1; 25]).chain([2; 100]).map(leaf).collect();
         assign_radii(&mut beams, &clusters, 0.1, 2.0);
         // Half of the upper branch's 100 pipes, since it is half way up the last quarter, and its own.
-        let expected_m = 0.1 * (51.0_f32 / 201.0).sqrt();
+        let expected_m = 0.1 * (51.0_f32 / 126.0).sqrt();
         assert!((beams[0].tip_radius_m - expected_m).abs() < 1e-6, "{}", beams[0].tip_radius_m);
         // The branches bear none and taper to their own leaves.
-        assert!((beams[1].tip_radius_m - 0.1 * (100.0_f32 / 201.0).sqrt()).abs() < 1e-6);
+        assert!((beams[1].tip_radius_m - 0.1 * (25.0_f32 / 126.0).sqrt()).abs() < 1e-6);
     }
 }

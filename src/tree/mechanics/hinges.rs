@@ -34,7 +34,7 @@ const BENDING_HINGES: usize = 12;
 const SWAYING_HINGES: usize = 6;
 const LEAST_SWAYING_HINGES: usize = 2;
 /// Hinges of a beam of a branch that bears leaves alone, for its bend, and of the whole branch for its sway.
-const TWIG_HINGES: usize = 4;
+const TWIG_HINGES: usize = 8;
 const SWAYING_TWIG_HINGES: usize = 2;
 
 /// A hinge, and the rigid piece beyond it.
