@@ -40,6 +40,8 @@ pub enum View {
     Hillside,
     /// From the meadow, at eye height, at the trees of the edge.
     Edge,
+    /// Under the trees, at eye height.
+    Inside,
     /// From above.
     Aerial,
 }

@@ -55,8 +55,12 @@ impl Scene for ForestScene {
                 (above(eye, 0.16 * half_m + 5.0), above(uphill * 0.2 * half_m, 14.0))
             }
             View::Edge => {
-                let eye = -uphill * (half_m + 17.0);
+                let eye = -uphill * (half_m + 30.0);
                 (above(eye, 1.8), above(-uphill * (half_m - 4.0) + uphill.perp() * 3.0, 6.0))
+            }
+            View::Inside => {
+                let eye = -uphill * (0.55 * half_m);
+                (above(eye, 1.7), above(eye + uphill * 20.0 + uphill.perp() * 6.0, 2.6))
             }
             View::Aerial => (above(-uphill * half_m * 0.9, 1.1 * half_m + 20.0), above(Vec2::ZERO, 4.0)),
         };

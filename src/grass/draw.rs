@@ -2,7 +2,7 @@
 
 use super::{
     components::{GrassPatch, Meadow},
-    field::GrassField,
+    ecs::GrassField,
     material::{GrassMaterial, base_material, grass_material},
     mesh::{bounds, still_mesh, swaying_mesh},
 };

@@ -4,7 +4,7 @@ use bevy::math::Vec2;
 
 /// A patch of the grid, counted from the field's origin along x and z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct GridPatch {
+pub(crate) struct GridPatch {
     x: i32,
     z: i32,
 }
@@ -29,7 +29,7 @@ impl GridPatch {
 }
 
 /// The patches that reach nearer to a place than that.
-pub(super) fn patches_within(side_m: Vec2, place_m: Vec2, reach_m: f32) -> impl Iterator<Item = GridPatch> {
+pub(crate) fn patches_within(side_m: Vec2, place_m: Vec2, reach_m: f32) -> impl Iterator<Item = GridPatch> {
     let [low, high] = [-reach_m, reach_m].map(|away_m| ((place_m + away_m) / side_m).floor().as_ivec2());
     let square = (low.x..=high.x).flat_map(move |x| (low.y..=high.y).map(move |z| GridPatch { x, z }));
     square.filter(move |patch| patch.distance_m(side_m, place_m) < reach_m)

@@ -5,13 +5,13 @@
 //! vertex shader bends each of them by the wind at its own place and time, so gusts run over the meadow as waves.
 //!
 //! - `settings` is what can be chosen, `blades` lays out tufts, `spine` bends a blade: plain arithmetic.
-//! - `field` repeats a patch about the viewers, on the grid of `field_grid`: a meadow without end.
+//! - `ecs` repeats a patch about the viewers, on the grid of `field_grid`: a meadow without end.
 //! - `components` has the entities: it lays out the blades of a patch in the background and keeps the last good ones.
 //! - With the feature `render`, `mesh`, `material` and `draw` draw it. `shaders/blade.wesl` has the formulas of `spine`.
 
 pub mod blades;
 mod components;
-mod field;
+mod ecs;
 mod field_grid;
 mod plugin;
 mod settings;
@@ -25,7 +25,7 @@ mod material;
 mod mesh;
 
 pub use components::{GrassGround, GrassPatch, Meadow};
-pub use field::{GrassField, GrassFieldPatches};
+pub use ecs::{GrassField, GrassFieldPatches};
 pub use plugin::GrassPlugin;
 pub use settings::{GrassLook, GrassResponse, Sward, Tuft};
 

@@ -2,7 +2,7 @@
 
 use super::{
     components::{GrassPatch, finish_meadow_layouts, remove_meadow, start_meadow_layouts},
-    field::{GrassField, apply_grass_fields, move_grass_fields, remove_grass_field},
+    ecs::{GrassField, apply_grass_fields, move_grass_fields, remove_grass_field},
 };
 use crate::{
     schedule::{WindwoodSystems, configure_sets},

@@ -28,6 +28,9 @@ use std::sync::Arc;
 /// left out under the leaves of an oak, a birch would be a bare pole in winter.
 const LEAST_WOOD_SHARE: f32 = 0.45;
 
+/// A plant with no more vertices of leaves than so many is never thinned: its few leaves, enlarged, would look like another plant.
+const SMALL_VERTICES: usize = 2000;
+
 /// The meshes of a species at one age.
 pub(crate) struct SpeciesMeshes {
     /// Made once for all ages.
@@ -92,6 +95,9 @@ pub(crate) fn species_meshes(
         false => prunable_radius_m(&model.skeleton, most_m, LEAST_WOOD_SHARE),
     };
     let decimations = |model: &TreeModel| -> Vec<Decimation> {
+        if !is_indivisible && model.leaves.positions.len() <= SMALL_VERTICES {
+            return vec![Decimation::default(); settings.decimations.len()];
+        }
         let bearable = |part: &Decimation| Decimation {
             least_radius_m: least_radius_m(model, part.least_radius_m),
             leaf_share: leaf_share(part.leaf_share),

@@ -1,6 +1,6 @@
 //! Cuts a skeleton into branches, each with the lumps of mass and drag that it carries.
 
-use super::hinges::Hinge;
+use super::hinges::{Hinge, branch_hinges};
 use crate::{
     constants::AIR_DENSITY_KG_M3,
     tree::{
@@ -145,6 +145,11 @@ pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> LoadedTree {
 }
 
 impl LoadedBranch {
+    /// Gives it its hinges, for which its lumps must be there.
+    pub fn hinge(&mut self, species: &Species, skeleton: &Skeleton) {
+        [self.hinges, self.swaying_hinges] = branch_hinges(species, skeleton, &self.beams, self.bears);
+    }
+
     /// A branch that has no beam yet.
     fn growing(first: &SkeletonBeam, carrier: Option<Carrier>) -> Self {
         let base = first.base.as_dvec3();

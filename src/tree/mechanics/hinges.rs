@@ -9,7 +9,6 @@
 //! for 1 N m and stands where that has its centre, `(q + 2) / (2 (1 + q + q^2))` of the way: so it turns the end of the length
 //! and moves it exactly as a taper does under a constant moment. It twists by `E / 2 G` as much. A stem stands on one more hinge, that of its roots.
 
-use super::branches::LoadedBranch;
 use crate::tree::{skeleton::Skeleton, species::Species};
 use bevy::math::{DMat3, DVec3};
 use std::f64::consts::PI;
@@ -73,18 +72,14 @@ pub(super) fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-impl LoadedBranch {
-    /// Gives it its hinges, for which its lumps must be there.
-    pub fn hinge(&mut self, species: &Species, skeleton: &Skeleton) {
-        let counted = |count: usize| hinges(species, skeleton, &self.beams, count);
-        if self.bears {
-            let swaying = SWAYING_HINGES.div_ceil(self.beams.len()).max(LEAST_SWAYING_HINGES);
-            (self.hinges, self.swaying_hinges) = (counted(BENDING_HINGES), counted(swaying));
-        } else {
-            (self.hinges, self.swaying_hinges) =
-                (counted(TWIG_HINGES), counted(SWAYING_TWIG_HINGES.div_ceil(self.beams.len())));
-        }
-    }
+/// The hinges of a branch of these beams, which bears others or not: many for its bend, and few for its sway.
+pub(super) fn branch_hinges(species: &Species, skeleton: &Skeleton, beams: &[u32], bears: bool) -> [Vec<Hinge>; 2] {
+    let bending = if bears { BENDING_HINGES } else { TWIG_HINGES };
+    let swaying = match bears {
+        true => SWAYING_HINGES.div_ceil(beams.len()).max(LEAST_SWAYING_HINGES),
+        false => SWAYING_TWIG_HINGES.div_ceil(beams.len()),
+    };
+    [bending, swaying].map(|count| hinges(species, skeleton, beams, count))
 }
 
 /// The hinges of a branch of these beams, root first, so many a beam.

@@ -1,10 +1,10 @@
 //! Fields of grass without end: patches that come and go about the viewers.
 
-use super::{
-    components::{GrassGround, GrassPatch},
-    field_grid::{GridPatch, patches_within},
-};
 use crate::{
+    grass::{
+        components::{GrassGround, GrassPatch},
+        field_grid::{GridPatch, patches_within},
+    },
     ground::{Ground, LevelGround},
     setting::{SettingError, require},
     viewpoint::Viewpoints,
@@ -110,7 +110,7 @@ type FieldData = (
 );
 
 /// Takes over changed settings and ground.
-pub(super) fn apply_grass_fields(
+pub(crate) fn apply_grass_fields(
     mut commands: Commands,
     mut fields: Query<FieldData, Or<(Changed<GrassField>, Changed<GrassGround>)>>,
 ) {
@@ -129,7 +129,7 @@ pub(super) fn apply_grass_fields(
 }
 
 /// Has patches come where a viewer comes near, and go where none is.
-pub(super) fn move_grass_fields(
+pub(crate) fn move_grass_fields(
     mut commands: Commands,
     viewpoints: Viewpoints,
     mut fields: Query<FieldData>,
@@ -163,7 +163,7 @@ pub(super) fn move_grass_fields(
 }
 
 /// Removes the patches of a field that is removed.
-pub(super) fn remove_grass_field(
+pub(crate) fn remove_grass_field(
     removed: On<Remove<GrassField>>,
     mut commands: Commands,
     mut fields: Query<&mut GrassFieldPatches>,
