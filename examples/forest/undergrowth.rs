@@ -36,17 +36,17 @@ fn plan(trees: u32, seed: u64) -> ForestPlan {
     let floor = Area {
         name: "floor".into(),
         shape: Shape::Rectangle { min_m: [-half_m; 2], max_m: [half_m; 2] },
-        density_per_ha: 1900.0,
+        density_per_ha: 3600.0,
         // In dense groups, with bare ground between.
         pattern: CountModel::NegativeBinomial { k: 0.35 },
         least_distance_m: 0.5,
         drift_m: 9.0,
         drift_purity: 0.9,
         stock: vec![
-            stock("bracken", 5.0, 4.0),
+            stock("bracken", 6.0, 4.0),
             stock("bilberry", 4.0, 8.0),
             stock("bramble", 1.5, 5.0),
-            stock("rowan_sapling", 0.25, 8.0),
+            stock("rowan_sapling", 0.2, 8.0),
         ],
         ..default()
     };

@@ -136,6 +136,11 @@ impl ForestCells {
         })
     }
 
+    /// Cells along a side of a tile.
+    pub(super) fn tile_cells(&self) -> i32 {
+        self.tile_cells
+    }
+
     /// Takes over what the forest before has; near cells that are of no use are returned. What stands there stays until it is known what
     /// stands there now, and only that is changed which is another.
     pub(super) fn take_over(&mut self, before: &mut Self) -> Vec<Entity> {
@@ -341,11 +346,6 @@ impl ForestCells {
     pub(super) fn mask_range(&self) -> MaskRange {
         let (cell_m, far_to_m) = (self.planter.cell_m(), self.settings.far_to_m);
         MaskRange { cell_m, far_to_m, from_m: self.impostors_from_m }
-    }
-
-    /// Cells along a side of a tile.
-    pub(super) fn tile_cells(&self) -> i32 {
-        self.tile_cells
     }
 
     /// The generation since which tiles and numbers of species are the same.
