@@ -57,6 +57,7 @@ mod background;
 mod constants;
 mod ground;
 mod interpolation;
+mod mixing;
 mod plugin_checks;
 mod removal;
 mod ron_loader;

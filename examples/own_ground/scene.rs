@@ -6,11 +6,11 @@ use crate::{
     support::{
         daylight::{haze, spawn_daylight},
         options::SceneOptions,
-        scene::Scene,
+        scene::{Scene, no_plan_failed},
         window::{CAMERA_KEYS, spawn_text},
     },
 };
-use bevy::{asset::LoadState, math::DVec2, prelude::*};
+use bevy::{math::DVec2, prelude::*};
 use bevy_windwood::{
     prelude::*,
     terrain::{RayCastGround, TriangleGround},
@@ -63,12 +63,7 @@ impl Scene for OwnGroundScene {
     }
 
     fn is_spawned(&self, world: &mut World) -> Result<bool, String> {
-        let assets = world.resource::<AssetServer>().clone();
-        let plan = world.query::<&Forest>().iter(world).map(|forest| assets.load_state(&forest.plan)).next();
-        match plan {
-            Some(LoadState::Failed(error)) => Err(format!("{PLAN}: {error}")),
-            _ => Ok(true),
-        }
+        no_plan_failed(world)
     }
 }
 

@@ -1,7 +1,7 @@
 //! A scene: what an example says about itself to get a window and pictures.
 
 use super::{options::SceneOptions, pictures, start, window};
-use bevy::prelude::*;
+use bevy::{asset::LoadState, prelude::*};
 use bevy_windwood::prelude::*;
 use std::process::ExitCode;
 
@@ -51,4 +51,19 @@ pub fn run<S: Scene>(scene: S) -> ExitCode {
     }
     app.add_plugins((window::plugin::<S>, S::window_plugin)).run();
     ExitCode::SUCCESS
+}
+
+/// Whether forests may still grow: an error where the plan of one could not be loaded.
+///
+/// # Errors
+/// With the plan's file.
+pub fn no_plan_failed(world: &mut World) -> Result<bool, String> {
+    let assets = world.resource::<AssetServer>().clone();
+    for forest in world.query::<&Forest>().iter(world) {
+        if let LoadState::Failed(error) = assets.load_state(&forest.plan) {
+            let file = forest.plan.path().map_or_else(String::new, ToString::to_string);
+            return Err(format!("{file}: {error}"));
+        }
+    }
+    Ok(true)
 }

@@ -6,11 +6,11 @@ use crate::{
         daylight::{haze, spawn_daylight},
         landscape::{FINEST_CELL_M, Landscape},
         options::SceneOptions,
-        scene::Scene,
+        scene::{Scene, no_plan_failed},
     },
     window,
 };
-use bevy::{asset::LoadState, math::DVec2, prelude::*};
+use bevy::{math::DVec2, prelude::*};
 use bevy_windwood::{
     forest::PlanCover,
     prelude::*,
@@ -74,12 +74,7 @@ impl Scene for TerrainScene {
     }
 
     fn is_spawned(&self, world: &mut World) -> Result<bool, String> {
-        let assets = world.resource::<AssetServer>().clone();
-        let plan = world.query::<&Forest>().iter(world).map(|forest| assets.load_state(&forest.plan)).next();
-        match plan {
-            Some(LoadState::Failed(error)) => Err(format!("{PLAN}: {error}")),
-            _ => Ok(true),
-        }
+        no_plan_failed(world)
     }
 }
 

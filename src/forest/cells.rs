@@ -7,12 +7,13 @@ use super::{
     components::ForestSettings,
     near::{CellTask, NearTrees},
     planted_tile::{PlantedTile, cells_of_tile},
-    reach::{known_m, tile_stream},
+    reach::{known_m, tile_of, tile_stream},
     stand::Stand,
 };
 #[cfg(feature = "render")]
 use crate::render::{impostors::near_mask::MaskRange, instances::components::HasImpostor};
 use crate::{
+    background::take_finished,
     cells::{Cell, CellSet, CellStore, CellStream, Orders, ViewerPose},
     ground::Ground,
     scatter::Planter,
@@ -23,7 +24,7 @@ use crate::{
 use bevy::{
     platform::collections::HashMap,
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{AsyncComputeTaskPool, Task},
 };
 use std::{collections::BTreeMap, sync::Arc};
 
@@ -34,7 +35,6 @@ pub(super) type PackedTile = (Arc<PlantedTile>, Vec<(IVec2, Cell)>);
 pub(super) struct Replanting {
     pub tile: IVec2,
     pub cells: Vec<IVec2>,
-    pub task: Task<PackedTile>,
 }
 
 /// A forest that grows: its plan made ready, and its cells about the viewers with every stem that stands there.
@@ -56,7 +56,7 @@ pub struct ForestCells {
     pub(super) changes: Option<ChangeIndex>,
     /// Tiles with changes that are still to be planted again, by row and column, and the cells of each in which near trees may be others.
     pub(super) changed_tiles: BTreeMap<(i32, i32), Vec<IVec2>>,
-    pub(super) replanting: Vec<Replanting>,
+    pub(super) replanting: Vec<(Replanting, Task<PackedTile>)>,
     /// Tiles of the plan before, whose cells are in the store.
     outdated: usize,
     /// Tiles that impostors have still to be made of, where there are impostors.
@@ -231,7 +231,7 @@ impl ForestCells {
     ) -> (&mut NearTrees, &[Handle<Species>], &ForestSettings, impl Fn(IVec2) -> Option<CellTask>) {
         let Self { near, species, settings, tiles, tile_cells, planter, ground, changes, .. } = self;
         let plant = |cell: IVec2| {
-            let tile = cell.div_euclid(IVec2::splat(*tile_cells));
+            let tile = tile_of(cell, *tile_cells);
             UpToDate(tiles).contains(tile).then(|| {
                 let changes = changes.as_ref().and_then(|changes| changes.tile(tile));
                 let planter = CellPlanter { planter: planter.clone(), ground: ground.clone(), changes };
@@ -276,14 +276,7 @@ impl ForestCells {
 
     /// Takes over tiles that were planted.
     fn receive(&mut self) {
-        let mut planted = Vec::new();
-        self.planting.retain_mut(|(place, task)| {
-            let done = block_on(poll_once(task));
-            let is_awaited = done.is_none();
-            planted.extend(done.map(|packed| (*place, packed)));
-            is_awaited
-        });
-        for (place, packed) in planted {
+        for (place, packed) in take_finished(&mut self.planting) {
             if self.stream.fulfil(place) {
                 self.take_tile(place, packed);
             }

@@ -2,6 +2,7 @@
 
 use super::{
     changes::{ForestChanges, PlantedStem, StemChange},
+    reach::tile_of,
     stem_id::StemId,
 };
 use crate::{
@@ -10,7 +11,7 @@ use crate::{
 };
 use bevy::{
     log::warn,
-    math::{DVec2, IVec2, Vec2, Vec3, Vec3Swizzles},
+    math::{IVec2, Vec2, Vec3, Vec3Swizzles},
     platform::collections::{HashMap, HashSet},
 };
 use std::{collections::BTreeMap, sync::Arc};
@@ -69,12 +70,12 @@ impl TileChanges {
         }
     }
 
-    /// The cells in which stems of the plan are felled, and how many. Cells have that side, m.
-    pub fn felled_by_cell(&self, cell_m: f64) -> HashMap<IVec2, u32> {
+    /// The cells in which stems of the plan are felled, and how many.
+    pub fn felled_by_cell(&self, planter: &Planter) -> HashMap<IVec2, u32> {
         let mut cells = HashMap::default();
         let felled = self.stems.iter().filter(|(_, stem)| **stem == AlteredStem::Felled);
         for place_m in felled.filter_map(|(id, _)| id.place_m()) {
-            *cells.entry((place_m.as_dvec2() / cell_m).floor().as_ivec2()).or_default() += 1;
+            *cells.entry(planter.cell_at(place_m)).or_default() += 1;
         }
         cells
     }
@@ -86,6 +87,18 @@ impl TileChanges {
 
     fn is_empty(&self) -> bool {
         self.stems.is_empty() && self.added.is_empty()
+    }
+
+    /// Visits the cells in which it differs from the changes of the same tile at another time, some of them more than once.
+    fn visit_differences(&self, other: &Self, planter: &Planter, mut visit: impl FnMut(IVec2)) {
+        for id in self.stems.keys().chain(other.stems.keys()).filter(|id| self.stems.get(id) != other.stems.get(id)) {
+            visit(planter.cell_at(id.place_m().unwrap_or_default()));
+        }
+        for key in self.added.keys().chain(other.added.keys()) {
+            if self.added.get(key) != other.added.get(key) {
+                visit(IVec2::new(key.1, key.0));
+            }
+        }
     }
 
     fn set(&mut self, id: StemId, cell: IVec2, change: Change) {
@@ -110,7 +123,6 @@ enum Change {
 
 /// The changes of a forest, by tile.
 pub(super) struct ChangeIndex {
-    cell_m: f64,
     /// Cells along a side of a tile.
     tile_cells: i32,
     tiles: HashMap<IVec2, Arc<TileChanges>>,
@@ -119,14 +131,9 @@ pub(super) struct ChangeIndex {
 }
 
 impl ChangeIndex {
-    /// Without any change.
-    pub fn new(cell_m: f32, tile_cells: i32) -> Self {
-        Self { cell_m: f64::from(cell_m), tile_cells, tiles: HashMap::default(), planted_m: HashMap::default() }
-    }
-
     /// Of all changes there are. Species that the plan does not have are told.
     pub fn of(changes: &ForestChanges, planter: &Planter, tile_cells: i32) -> Self {
-        let mut index = Self::new(planter.cell_m(), tile_cells);
+        let mut index = Self { tile_cells, tiles: HashMap::default(), planted_m: HashMap::default() };
         let mut unknown = HashSet::default();
         for (id, place_m) in changes.places() {
             index.update(id, place_m, changes, planter, &mut unknown);
@@ -149,11 +156,6 @@ impl ChangeIndex {
         self.tiles.values().cloned().collect()
     }
 
-    /// The tile of a cell.
-    pub fn tile_of(&self, cell: IVec2) -> IVec2 {
-        cell.div_euclid(IVec2::splat(self.tile_cells))
-    }
-
     /// Whether nothing is changed.
     pub fn is_empty(&self) -> bool {
         self.tiles.is_empty()
@@ -169,7 +171,7 @@ impl ChangeIndex {
         planter: &Planter,
         unknown: &mut HashSet<u8>,
     ) -> IVec2 {
-        let cell = (place_m.as_dvec2() / self.cell_m).floor().as_ivec2();
+        let cell = planter.cell_at(place_m);
         let mut number_of = |number: u8| {
             let name = changes.species_name(number)?;
             let found = planter.species().iter().position(|species| species == name);
@@ -195,7 +197,7 @@ impl ChangeIndex {
                 _ => self.planted_m.remove(&id),
             };
         }
-        let tile = self.tile_of(cell);
+        let tile = tile_of(cell, self.tile_cells);
         let there = self.tiles.entry(tile).or_default();
         Arc::make_mut(there).set(id, cell, change);
         if there.is_empty() {
@@ -205,28 +207,16 @@ impl ChangeIndex {
     }
 
     /// The cells in which it differs from another of the same tiles, row after row.
-    pub fn cells_that_differ(&self, other: &Self) -> Vec<IVec2> {
+    pub fn cells_that_differ(&self, other: &Self, planter: &Planter) -> Vec<IVec2> {
         let mut cells: Vec<IVec2> = Vec::new();
         let nothing = Arc::default();
         let tiles = self.tiles.keys().chain(other.tiles.keys().filter(|tile| !self.tiles.contains_key(*tile)));
         for tile in tiles {
             let [ours, theirs] = [self, other].map(|index| index.tiles.get(tile).unwrap_or(&nothing));
-            self.visit_differences(ours, theirs, |cell| cells.push(cell));
+            ours.visit_differences(theirs, planter, |cell| cells.push(cell));
         }
         cells.sort_unstable_by_key(|cell| (cell.y, cell.x));
         cells.dedup();
         cells
-    }
-
-    fn visit_differences(&self, ours: &TileChanges, theirs: &TileChanges, mut visit: impl FnMut(IVec2)) {
-        for id in ours.stems.keys().chain(theirs.stems.keys()).filter(|id| ours.stems.get(id) != theirs.stems.get(id)) {
-            let place_m: DVec2 = id.place_m().unwrap_or_default().as_dvec2();
-            visit((place_m / self.cell_m).floor().as_ivec2());
-        }
-        for key in ours.added.keys().chain(theirs.added.keys()) {
-            if ours.added.get(key) != theirs.added.get(key) {
-                visit(IVec2::new(key.1, key.0));
-            }
-        }
     }
 }

@@ -6,14 +6,11 @@ use super::{
     changes::ForestChanges,
     journal::{ChangedStem, Journal},
     near_cell::NearTree,
+    reach::tile_of,
     stand::REACH_M,
 };
-use crate::{scatter::Stem, tree::Species};
-use bevy::{
-    platform::collections::HashSet,
-    prelude::*,
-    tasks::{block_on, poll_once},
-};
+use crate::{background::take_finished, scatter::Stem, tree::Species};
+use bevy::{platform::collections::HashSet, prelude::*};
 
 /// Tiles that are planted again at once, at most.
 const MOST_REPLANTED: usize = 4;
@@ -49,7 +46,7 @@ impl ForestCells {
             }
             (_, before) => {
                 let index = ChangeIndex::of(changes, &self.planter, tile_cells);
-                let cells = before.as_ref().map(|before| index.cells_that_differ(before));
+                let cells = before.as_ref().map(|before| index.cells_that_differ(before, &self.planter));
                 self.stand_is_due |= !index.is_empty();
                 *before = Some(index);
                 // Where there were none, nothing has been planted yet, or all is planted anew after the plan has changed.
@@ -66,7 +63,7 @@ impl ForestCells {
 
     /// Has a cell that was changed planted again: `at_once` if it is near and so many are left.
     fn change_cell(&mut self, cell: IVec2, at_once: &mut u32) {
-        let tile = cell.div_euclid(IVec2::splat(self.tile_cells()));
+        let tile = tile_of(cell, self.tile_cells());
         let is_done = *at_once > 0 && self.near.has(cell);
         if is_done {
             *at_once -= 1;
@@ -84,8 +81,8 @@ impl ForestCells {
         let (near, _, _, plant) = self.parts();
         near.replant_awaited(tile, cell, plant);
         // What is under way is as it was before.
-        let under_way = self.replanting.iter_mut().filter(|other| other.tile == tile);
-        under_way.for_each(|other| other.cells.retain(|other| *other != cell));
+        let under_way = self.replanting.iter_mut().filter(|(other, _)| other.tile == tile);
+        under_way.for_each(|(other, _)| other.cells.retain(|other| *other != cell));
         let is_under_way = self.is_being_planted(tile);
         if !is_done || is_under_way || self.has_impostors() {
             let cells = self.changed_tiles.entry((tile.y, tile.x)).or_default();
@@ -134,19 +131,13 @@ impl ForestCells {
 
     /// Whether a tile is being planted, perhaps as it was before its last change.
     fn is_being_planted(&self, tile: IVec2) -> bool {
-        self.planting.iter().any(|(other, _)| *other == tile) || self.replanting.iter().any(|other| other.tile == tile)
+        self.planting.iter().any(|(other, _)| *other == tile)
+            || self.replanting.iter().any(|(other, _)| other.tile == tile)
     }
 
     /// Takes over changed tiles that were planted again, and has the next ones planted.
     pub(super) fn replant_changed_tiles(&mut self) {
-        let mut planted = Vec::new();
-        self.replanting.retain_mut(|Replanting { tile, cells, task }| {
-            let done = block_on(poll_once(task));
-            let is_awaited = done.is_none();
-            planted.extend(done.map(|packed| (*tile, std::mem::take(cells), packed)));
-            is_awaited
-        });
-        for (tile, cells, packed) in planted {
+        for (Replanting { tile, cells }, packed) in take_finished(&mut self.replanting) {
             if self.tiles.get(&tile).is_some_and(|known| !known.is_outdated) {
                 let stems = packed.0.clone();
                 self.take_tile(tile, packed);
@@ -165,7 +156,7 @@ impl ForestCells {
             let cells = self.changed_tiles.remove(&key).unwrap_or_default();
             if is_known {
                 let task = self.plant_tile(tile);
-                self.replanting.push(Replanting { tile, cells, task });
+                self.replanting.push((Replanting { tile, cells }, task));
             }
         }
     }

@@ -7,7 +7,7 @@ use super::{
     components::{ForestCell, ForestSettings},
     near_cell::{NearCell, NearEvent, NearTree, tree},
     planted_tile::PlantedTile,
-    reach::reaching,
+    reach::{reaching, tile_of},
     stem_id::StemId,
 };
 use crate::{
@@ -144,7 +144,7 @@ impl NearTrees {
     pub fn follow(&mut self, viewers: &[ViewerPose], plant: impl Fn(IVec2) -> Option<CellTask>) {
         self.stream.step(viewers, &UpToDate(&self.cells), &mut self.orders);
         for cell in &self.orders.plant {
-            let tile = cell.div_euclid(IVec2::splat(self.tile_cells));
+            let tile = tile_of(*cell, self.tile_cells);
             let alone = if self.tiles.contains_key(&tile) { None } else { plant(*cell) };
             self.planting.push((*cell, alone.map_or(Planting::Tile, Planting::Alone)));
         }
@@ -227,7 +227,7 @@ impl NearTrees {
             let planted = match source {
                 Planting::Alone(task) => block_on(poll_once(task)),
                 Planting::Tile => {
-                    let tile = tiles.get(&cell.div_euclid(IVec2::splat(*tile_cells)));
+                    let tile = tiles.get(&tile_of(*cell, *tile_cells));
                     // One that nobody wants any more is waited for no longer.
                     tile.map(|tile| tile.stems(*cell)).or_else(|| (!stream.keeps(*cell)).then(Vec::new))
                 }

@@ -5,6 +5,7 @@ use super::{
     near::{CellTask, NearTrees, Planting},
     near_cell::{NearEvent, NearTree},
     planted_tile::PlantedTile,
+    reach::tile_of,
     stem_id::StemId,
 };
 use crate::{scatter::Planted, tree::Species};
@@ -62,7 +63,7 @@ impl NearTrees {
             let is_out_of_date = match source {
                 Planting::Alone(_) => *other == cell,
                 // Its tile was there, and comes again only if it has to be planted again.
-                Planting::Tile => had_tile && other.div_euclid(IVec2::splat(self.tile_cells)) == tile,
+                Planting::Tile => had_tile && tile_of(*other, self.tile_cells) == tile,
             };
             if is_out_of_date {
                 *source = plant(*other).map_or(Planting::Tile, Planting::Alone);

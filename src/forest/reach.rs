@@ -8,6 +8,11 @@ use crate::{
 };
 use bevy::math::IVec2;
 
+/// The tile of a cell, where tiles have so many cells along a side.
+pub(super) fn tile_of(cell: IVec2, tile_cells: i32) -> IVec2 {
+    cell.div_euclid(IVec2::splat(tile_cells))
+}
+
 /// What comes stays until a viewer is farther from it than the distance at which it comes by this factor: nobody who walks to and fro
 /// at a border has it planted and cleared.
 pub(super) const HYSTERESIS: f32 = 1.15;
@@ -46,7 +51,7 @@ pub(super) fn tile_stream(
         drops_per_step: tiles(CELLS_DROPPED_PER_STEP),
         ..reaching(known_m(settings), side_m)
     };
-    let bounds = planter.cells().map(|cells| cells.map(|cell| cell.div_euclid(IVec2::splat(tile_cells))));
+    let bounds = planter.cells().map(|cells| cells.map(|cell| tile_of(cell, tile_cells)));
     CellStream::new(stream, side_m, bounds)
 }
 

@@ -51,7 +51,7 @@ fn balances(
     let mut balances = CellBalances::default();
     let mut plants = Vec::new();
     for tile in tiles {
-        for (cell, felled) in tile.felled_by_cell(f64::from(planter.cell_m())) {
+        for (cell, felled) in tile.felled_by_cell(planter) {
             planter.plant(cell, ground, &mut plants);
             let stems = plants.len().max(1) as f32;
             balances.entry(cell).or_default().left = 1.0 - (felled as f32).min(stems) / stems;

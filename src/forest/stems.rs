@@ -1,6 +1,6 @@
 //! Which stem stands where.
 
-use super::{cells::ForestCells, stem_id::StemId};
+use super::{cells::ForestCells, reach::tile_of, stem_id::StemId};
 use crate::scatter::{Planted, Stem};
 use bevy::prelude::*;
 
@@ -59,7 +59,7 @@ impl ForestCells {
     }
 
     fn stems_of(&self, cell: IVec2) -> impl Iterator<Item = StandingStem> {
-        let planter = self.cell_planter(cell.div_euclid(IVec2::splat(self.tile_cells())));
+        let planter = self.cell_planter(tile_of(cell, self.tile_cells()));
         planter.plants(cell).into_iter().map(|(id, plant)| StandingStem { id, plant })
     }
 }

@@ -1,6 +1,7 @@
 //! The grid of a field of grass: which patches are about a viewer, and the seed of each.
 
-use bevy::math::Vec2;
+use crate::mixing::{finalised, packed};
+use bevy::math::{IVec2, Vec2};
 
 /// A patch of the grid, counted from the field's origin along x and z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -23,8 +24,7 @@ impl GridPatch {
 
     /// The seed of its blades in a field with that seed.
     pub fn seed(self, field_seed: u64) -> u64 {
-        let place = u64::from(self.x.cast_unsigned()) << 32 | u64::from(self.z.cast_unsigned());
-        scrambled(scrambled(place) ^ field_seed)
+        finalised(finalised(packed(IVec2::new(self.x, self.z))) ^ field_seed)
     }
 }
 
@@ -33,13 +33,6 @@ pub(crate) fn patches_within(side_m: Vec2, place_m: Vec2, reach_m: f32) -> impl 
     let [low, high] = [-reach_m, reach_m].map(|away_m| ((place_m + away_m) / side_m).floor().as_ivec2());
     let square = (low.x..=high.x).flat_map(move |x| (low.y..=high.y).map(move |z| GridPatch { x, z }));
     square.filter(move |patch| patch.distance_m(side_m, place_m) < reach_m)
-}
-
-/// The finaliser of SplitMix64 (Steele, Lea & Flood 2014): neighbours on the grid have unlike seeds.
-fn scrambled(value: u64) -> u64 {
-    let value = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let value = (value ^ (value >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    value ^ (value >> 31)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The components of trees.
 
 use super::{model::TreeModel, species::Species};
+use crate::mixing::mixed;
 use bevy::prelude::*;
 
 /// A tree of a species, at the place of its `Transform` (uniform scale).
@@ -86,14 +87,6 @@ impl Tree {
     pub(crate) fn variant_of(seed: u64, variants: u32) -> u32 {
         (mixed(seed) % u64::from(variants.max(1))) as u32
     }
-}
-
-/// The finaliser of `SplitMix64` (Steele, Lea & Flood 2014): nearby numbers become unrelated ones.
-fn mixed(mut x: u64) -> u64 {
-    x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ (x >> 31)
 }
 
 /// The model of a tree whose species has been baked. Written by [`WindwoodSystems::Bake`](crate::WindwoodSystems::Bake).

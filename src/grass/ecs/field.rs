@@ -53,6 +53,13 @@ impl GrassField {
         require("patches_per_frame", self.patches_per_frame as f32, 1.0..=1e4)
     }
 
+    /// The patch at a place of the grid, with blades of its own.
+    fn patch_at(&self, place: GridPatch) -> GrassPatch {
+        let mut patch = self.patch.clone();
+        patch.sward.seed = place.seed(patch.sward.seed);
+        patch
+    }
+
     fn side_m(&self) -> Vec2 {
         Vec2::new(self.patch.sward.width_m, self.patch.sward.depth_m)
     }
@@ -149,8 +156,7 @@ pub(crate) fn move_grass_fields(
         let ground = ground.map_or_else(|| Arc::new(LevelGround::default()) as Arc<dyn Ground>, |it| it.0.clone());
         for patch in patches.take_wanted(&field) {
             let middle_m = patch.middle_m(field.side_m());
-            let mut grass = field.patch.clone();
-            grass.sward.seed = patch.seed(field.patch.sward.seed);
+            let grass = field.patch_at(patch);
             let moved = MovedGround { ground: ground.clone(), origin: middle_m.as_dvec2() };
             let at = Transform::from_xyz(middle_m.x, 0.0, middle_m.y);
             let mut spawned = commands.spawn((ChildOf(entity), grass, GrassGround(Arc::new(moved)), at));
@@ -183,10 +189,8 @@ impl GrassFieldPatches {
             self.remove_all(commands);
         }
         for (place, entity) in &self.patches {
-            let mut grass = field.patch.clone();
-            grass.sward.seed = place.seed(field.patch.sward.seed);
             if let Ok(mut entity) = commands.get_entity(*entity) {
-                entity.try_insert(grass);
+                entity.try_insert(field.patch_at(*place));
             }
         }
         self.field = Some(field.clone());

@@ -5,6 +5,7 @@ use rand::{Rng, RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 
 use crate::{
     ground::Ground,
+    mixing::{mixed, packed},
     scatter::{
         counts::probability::Probabilities,
         plan::{forest::Area, shape::Region, stock::Stock},
@@ -68,7 +69,7 @@ pub(super) struct Layer {
 impl Layer {
     pub(super) fn new(area: &Area, number: u32, seed: u64) -> Result<Self, SettingError> {
         Ok(Self {
-            stream: mix(mix(seed) ^ u64::from(number)),
+            stream: mixed(mixed(seed) ^ u64::from(number)),
             number,
             region: Region::new(&area.shape),
             quadrat_m: f64::from(area.quadrat_side_m()),
@@ -175,12 +176,12 @@ impl Layer {
 
     fn candidate(&self, at: DVec2, seed: u64, ground: &impl Ground, free: impl Fn(DVec2) -> bool) -> Option<Candidate> {
         let coverage = self.region.coverage(at);
-        let covered = coverage >= 1.0 || share_of(mix(seed ^ COVERAGE)) < coverage;
+        let covered = coverage >= 1.0 || share_of(mixed(seed ^ COVERAGE)) < coverage;
         if !covered || !free(at) {
             return None;
         }
         let (height_m, slope) = (ground.height_m(at) as f32, ground.slope(at) as f32);
-        let chance = share_of(mix(seed ^ LIMITS));
+        let chance = share_of(mixed(seed ^ LIMITS));
         if !height_m.is_finite() || !self.area.ground.admit(height_m, slope, chance) {
             return None;
         }
@@ -193,8 +194,8 @@ impl Layer {
     fn choose_stock(&self, at: DVec2, seed: u64, admitted: impl Fn(&Stock) -> bool) -> Option<u32> {
         let shares = || self.area.stock.iter().map(|stock| if admitted(stock) { stock.share } else { 0.0 });
         let total: f32 = shares().sum();
-        let with_drift = self.area.drift_m > 0.0 && share_of(mix(seed ^ PURITY)) < self.area.drift_purity;
-        let chooser = if with_drift { self.drift(at) } else { mix(seed ^ SPECIES) };
+        let with_drift = self.area.drift_m > 0.0 && share_of(mixed(seed ^ PURITY)) < self.area.drift_purity;
+        let chooser = if with_drift { self.drift(at) } else { mixed(seed ^ SPECIES) };
         let mut left = share_of(chooser) * total;
         // The last with a share takes what rounding leaves.
         let mut chosen = None;
@@ -225,7 +226,7 @@ impl Layer {
                 }
             }
         }
-        mix(nearest.1 ^ SPECIES)
+        mixed(nearest.1 ^ SPECIES)
     }
 }
 
@@ -236,17 +237,8 @@ const PURITY: u64 = 0x7075_7269;
 const SPECIES: u64 = 0x7370_6563;
 const DRIFT: u64 = 0x6472_6966;
 
-/// The finaliser of `SplitMix64` (Steele, Lea & Flood 2014): every bit of the result depends on every bit of the value.
-fn mix(value: u64) -> u64 {
-    let value = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let value = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let value = (value ^ (value >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    value ^ (value >> 31)
-}
-
 fn place_hash(stream: u64, place: IVec2) -> u64 {
-    let packed = u64::from(place.x.cast_unsigned()) << 32 | u64::from(place.y.cast_unsigned());
-    mix(stream ^ mix(packed))
+    mixed(stream ^ mixed(packed(place)))
 }
 
 /// A number from 0 to below 1.
