@@ -141,12 +141,12 @@ impl TreePose {
 }
 
 /// The uniform scale nearest to that of a tree, without its sign.
-fn uniform_scale(stands: &GlobalTransform) -> f32 {
+pub(crate) fn uniform_scale(stands: &GlobalTransform) -> f32 {
     stands.affine().matrix3.determinant().abs().cbrt()
 }
 
 /// The rotation of a tree, after a mirror image along x if it is mirrored.
-fn world_from_local(stands: &GlobalTransform) -> Mat3 {
+pub(crate) fn world_from_local(stands: &GlobalTransform) -> Mat3 {
     let (scale, rotation, _) = stands.to_scale_rotation_translation();
     Mat3::from_quat(rotation) * Mat3::from_diagonal(Vec3::new(scale.x.signum(), 1.0, 1.0))
 }
