@@ -178,4 +178,6 @@ mod guide {
     struct Servers;
     #[doc = include_str!("../docs/guide/shaders.md")]
     struct Shaders;
+    #[doc = include_str!("../docs/guide/queries.md")]
+    struct Queries;
 }
