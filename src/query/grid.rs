@@ -224,18 +224,18 @@ mod tests {
         grid.insert(3, Standing { foot: Vec3::ZERO, reach_m: f32::INFINITY });
         assert_eq!(grid.len(), 1);
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-            grid.within(Vec2::splat(bad), 10.0, |..| panic!("nobody is there"));
-            grid.within(Vec2::ZERO, bad, |..| panic!("no radius"));
-            grid.along(Vec3::splat(bad), Vec3::X, 10.0, |..| panic!("no ray"));
-            grid.along(Vec3::ZERO, Vec3::splat(bad), 10.0, |..| panic!("no ray"));
+            grid.within(Vec2::splat(bad), 10.0, |_, _, _| panic!("nobody is there"));
+            grid.within(Vec2::ZERO, bad, |_, _, _| panic!("no radius"));
+            grid.along(Vec3::splat(bad), Vec3::X, 10.0, |_, _, _| panic!("no ray"));
+            grid.along(Vec3::ZERO, Vec3::splat(bad), 10.0, |_, _, _| panic!("no ray"));
         }
         let mut found = Vec::new();
-        grid.along(Vec3::new(-1e4, 0.0, 0.0), Vec3::X, f32::INFINITY, |key, ..| {
+        grid.along(Vec3::new(-1e4, 0.0, 0.0), Vec3::X, f32::INFINITY, |key, _, _| {
             found.push(key);
             true
         });
         assert_eq!(found, [1]);
-        grid.along(Vec3::new(1.0, 50.0, 0.0), Vec3::NEG_Y, 100.0, |key, ..| {
+        grid.along(Vec3::new(1.0, 50.0, 0.0), Vec3::NEG_Y, 100.0, |key, _, _| {
             found.push(key);
             true
         });

@@ -28,6 +28,9 @@ const LEAST_CELL_M: f32 = 0.02;
 const CLOSED: f32 = 0.5;
 /// Share of the polygons of an impressionist's crown that their texture covers: fitted to rays through the shipped ones.
 const POLYGON_COVER: f32 = 0.55;
+/// Twigs stand in one another's shade along their branches, and not at random within a cell: so much of what they show counts. Fitted to
+/// rays through the shipped species in winter.
+const TWIGS: f32 = 0.7;
 /// Layers that a storm bends into one another keep this share of their thickness.
 const THINNEST_LAYER: f32 = 0.1;
 
@@ -270,7 +273,7 @@ fn twigs(skeleton: &Skeleton, limbs: &Limbs) -> Vec<(Vec3, f32)> {
     limbs.limbs().iter().for_each(|limb| is_limb[limb.beam as usize] = true);
     let twigs = skeleton.beams.iter().zip(is_limb).filter(|(_, is_limb)| !is_limb);
     let halves = twigs.flat_map(|(beam, _)| {
-        [0.25, 0.75].map(|s| (beam.path(s), FRAC_PI_2 * beam.radius_m(s) * 0.5 * beam.length_m))
+        [0.25, 0.75].map(|s| (beam.path(s), TWIGS * FRAC_PI_2 * beam.radius_m(s) * 0.5 * beam.length_m))
     });
     halves.filter(|(at, area_m2)| at.is_finite() && area_m2.is_finite()).collect()
 }

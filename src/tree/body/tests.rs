@@ -24,7 +24,7 @@ fn bent(beams: &[BeamDynamics], pressure: f32) -> Vec<BeamPose> {
 
 fn random_ray(random: &mut Xoshiro256PlusPlus, height_m: f32) -> BodyRay {
     let mut around = |size: f32| Vec3::from_array(std::array::from_fn(|_| random.random_range(-size..size)));
-    let target = Vec3::Y * (0.5 * height_m) + around(0.5 * height_m);
+    let target = Vec3::Y * (0.6 * height_m) + around(0.3 * height_m);
     let origin = target + around(1.0).normalize_or(Vec3::X) * height_m;
     let direction = (target - origin).normalize();
     BodyRay { origin, direction, part_m: [0.0, 3.0 * height_m] }
@@ -50,8 +50,8 @@ fn limbs_are_the_thickest_beams_and_all_that_bear_them() {
 #[test]
 fn limbs_are_posed_as_in_the_whole_tree() {
     let model = oak();
-    let own = model.body.posed(&bent(model.body.limbs.beams(), 80.0));
-    let of_all = model.body.posed_by_all(&bent(&model.beams, 80.0));
+    let own = model.body.posed(&bent(model.body.limbs.beams(), 2e4));
+    let of_all = model.body.posed_by_all(&bent(&model.beams, 2e4));
     assert_eq!(own, of_all);
     assert_ne!(own, model.body.at_rest());
     let lean_m = own.cones.iter().zip(model.body.at_rest().cones).map(|(a, b)| a.ends[1].x - b.ends[1].x);
@@ -61,7 +61,7 @@ fn limbs_are_posed_as_in_the_whole_tree() {
 #[test]
 fn the_first_hit_is_that_of_a_search_of_all_cones() {
     let model = oak();
-    let posed = model.body.posed(&bent(model.body.limbs.beams(), 50.0));
+    let posed = model.body.posed(&bent(model.body.limbs.beams(), 5e3));
     let mut random = Xoshiro256PlusPlus::seed_from_u64(3);
     let mut hits = 0;
     for _ in 0..2000 {
@@ -143,7 +143,7 @@ fn a_moved_crown_is_met_by_a_moved_ray() {
 fn crowns_lean_with_the_stem_and_are_thinner_in_winter() {
     let model = oak();
     let body = &model.body;
-    let leaning = body.posed(&bent(body.limbs.beams(), 200.0));
+    let leaning = body.posed(&bent(body.limbs.beams(), 2e4));
     let top = leaning.shifts.last().unwrap();
     assert!(top.x > 0.5 && leaning.shifts[0].length() < 0.5 * top.length(), "{:?}", leaning.shifts);
     let height_m = 0.6 * model.height_m();
