@@ -29,7 +29,10 @@ fn own_name(world: &World, schedule: &Schedule, key: SystemKey) -> Option<&'stat
 /// What is known of a system of Bevy's: the sets that it is in.
 fn sets_of(schedule: &Schedule, key: SystemKey) -> String {
     let graph = schedule.graph();
-    let parents = graph.hierarchy().graph().neighbors_directed(NodeId::System(key), bevy::ecs::schedule::graph::Direction::Incoming);
+    let parents = graph
+        .hierarchy()
+        .graph()
+        .neighbors_directed(NodeId::System(key), bevy::ecs::schedule::graph::Direction::Incoming);
     let sets = parents.filter_map(|node| Some(format!("{:?}", graph.system_sets.get(node.as_set()?)?)));
     format!("a system of Bevy's in {}", sets.collect::<Vec<_>>().join(", "))
 }
@@ -62,14 +65,8 @@ fn no_system_of_ours_is_ambiguous_with_another() {
     let mut app = support::headless_app(Duration::ZERO, None);
     support::capture::begin(&mut app).expect("a graphics device");
     app.update();
-    let labels = [
-        First.intern(),
-        PreUpdate.intern(),
-        Update.intern(),
-        PostUpdate.intern(),
-        Last.intern(),
-        FixedUpdate.intern(),
-    ];
+    let labels =
+        [First.intern(), PreUpdate.intern(), Update.intern(), PostUpdate.intern(), Last.intern(), FixedUpdate.intern()];
     let mut found = String::new();
     for label in labels {
         for Ambiguity { systems: [one, other], on } in ambiguities(app.world_mut(), label) {

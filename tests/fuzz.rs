@@ -12,11 +12,11 @@
 mod damage;
 #[path = "fuzz/loaders.rs"]
 mod loaders;
-#[path = "fuzz/sequences.rs"]
-mod sequences;
 #[path = "../tools/characterise/note.rs"]
 #[expect(dead_code, reason = "the example prints notes")]
 mod note;
+#[path = "fuzz/sequences.rs"]
+mod sequences;
 #[path = "../tools/characterise/table/mod.rs"]
 #[expect(dead_code, reason = "the example reads files with it, these tests text")]
 mod table;

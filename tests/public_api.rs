@@ -93,7 +93,10 @@ fn what_is_public_is_what_was_reviewed() {
         lines.collect::<String>()
     };
     let changes = difference(&reviewed, &list, '-') + &difference(&list, &reviewed, '+');
-    assert!(reviewed == list, "what is public has changed. If that is meant, run `{RENEW}` and commit `{LIST}`.{changes}");
+    assert!(
+        reviewed == list,
+        "what is public has changed. If that is meant, run `{RENEW}` and commit `{LIST}`.{changes}"
+    );
 }
 
 #[test]

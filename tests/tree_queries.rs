@@ -63,7 +63,8 @@ fn wind_at(app: &mut App, place: Vec3) -> WindAt {
 #[test]
 fn limbs_are_where_those_of_an_articulated_tree_are() {
     let mut app = app();
-    let at = Transform::from_xyz(40.0, 3.0, -20.0).with_rotation(Quat::from_rotation_y(0.8)).with_scale(Vec3::splat(1.3));
+    let at =
+        Transform::from_xyz(40.0, 3.0, -20.0).with_rotation(Quat::from_rotation_y(0.8)).with_scale(Vec3::splat(1.3));
     let tree = plant(&mut app, "oak", at);
     let articulated = plant(&mut app, "oak", at);
     app.world_mut().entity_mut(articulated).insert(Articulated { deepest_order: 0, leaves: false });
@@ -127,9 +128,8 @@ fn trees_that_move_and_go_are_met_where_they_are() {
     let mut app = app();
     let tree = plant(&mut app, "birch", Transform::default());
     settle(&mut app);
-    let hits = |app: &mut App, x: f32| {
-        trace(app, Vec3::new(x - 8.0, 0.7, 0.0), Vec3::new(x + 8.0, 0.7, 0.0)).wood.is_some()
-    };
+    let hits =
+        |app: &mut App, x: f32| trace(app, Vec3::new(x - 8.0, 0.7, 0.0), Vec3::new(x + 8.0, 0.7, 0.0)).wood.is_some();
     assert!(hits(&mut app, 0.0) && !hits(&mut app, 100.0));
     app.world_mut().get_mut::<Transform>(tree).expect("it is there").translation.x = 100.0;
     (0..2).for_each(|_| app.update());
@@ -164,7 +164,9 @@ fn colliders_come_and_go_with_the_viewer() {
     app.world_mut().get_mut::<Transform>(viewer).expect("it is there").translation.x = 190.0;
     (0..12).for_each(|_| app.update());
     assert_eq!(given(&mut app).len(), 4);
-    assert!(app.world().get::<TreeColliders>(trees[0]).is_none() && app.world().get::<TreeColliders>(trees[19]).is_some());
+    assert!(
+        app.world().get::<TreeColliders>(trees[0]).is_none() && app.world().get::<TreeColliders>(trees[19]).is_some()
+    );
     app.insert_resource(TreeColliderSettings { to_m: f32::NAN, ..settings });
     (0..2).for_each(|_| app.update());
     assert_eq!(given(&mut app).len(), 4, "the last good settings stay");

@@ -96,7 +96,13 @@ impl<K: Copy + Eq + Hash + Ord> PlaceGrid<K> {
 
     /// Visits the things that a ray passes within their reach on the map, each once, until `visit` answers no. The last argument of
     /// `visit` is a distance along the ray, m: neither this thing nor any to come is met before.
-    pub fn along(&self, origin: Vec3, direction: Vec3, longest_m: f32, mut visit: impl FnMut(K, &Standing, f32) -> bool) {
+    pub fn along(
+        &self,
+        origin: Vec3,
+        direction: Vec3,
+        longest_m: f32,
+        mut visit: impl FnMut(K, &Standing, f32) -> bool,
+    ) {
         let longest_m = longest_m.min(LONGEST_M);
         if !(origin.is_finite() && direction.is_normalized() && longest_m >= 0.0) || self.places.is_empty() {
             return;

@@ -3,6 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `grid` | Who stands near a place, and along a ray. |
+//! | `passage` | A ray on its way through trees. |
 //! | `rustle` | How loud leaves are, and levels that follow. |
 //! | `components` | [`WindListener`], [`TreeColliders`], [`TreeColliderSettings`]. |
 //! | `ecs/places` | [`TreePlaces`]: every tree that has a model, by place. |
@@ -17,6 +18,7 @@
 mod components;
 mod ecs;
 mod grid;
+mod passage;
 mod plugin;
 mod rustle;
 

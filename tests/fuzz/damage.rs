@@ -50,7 +50,8 @@ pub fn damaged_text(text: &str, random: &mut Xoshiro256PlusPlus) -> String {
             break;
         }
         let at = numbers[random.random_range(0..numbers.len())];
-        let rest = text[at..].find(|c: char| !(c.is_ascii_digit() || c == '.')).map_or(text.len(), |length| at + length);
+        let rest =
+            text[at..].find(|c: char| !(c.is_ascii_digit() || c == '.')).map_or(text.len(), |length| at + length);
         text.replace_range(at..rest, WORDS[random.random_range(0..WORDS.len())]);
     }
     text

@@ -46,7 +46,8 @@ impl Game {
         app.finish();
         app.cleanup();
         let load = |name: &str| {
-            let text = fs::read_to_string(assets.join("species").join(format!("{name}.species.ron"))).expect("it is there");
+            let text =
+                fs::read_to_string(assets.join("species").join(format!("{name}.species.ron"))).expect("it is there");
             Species { variants: 1, ..Species::from_ron(&text).expect("it is valid") }
         };
         let species = ["birch", "fir", "hazel"].map(load);

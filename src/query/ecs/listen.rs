@@ -36,7 +36,8 @@ impl Leaves<'_, '_> {
         let mut sum = 0.0;
         self.places.within(ear.xz(), HEARD_M, |tree, _| {
             let Ok((tree, grown, at, canopy)) = self.trees.get(tree) else { return };
-            let (Some(model), Some(baked)) = (self.models.get(&grown.model), self.species.get(tree.species.id())) else {
+            let (Some(model), Some(baked)) = (self.models.get(&grown.model), self.species.get(tree.species.id()))
+            else {
                 return;
             };
             let scale = at.affine().matrix3.determinant().abs().cbrt();

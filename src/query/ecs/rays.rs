@@ -3,16 +3,17 @@
 use super::places::TreePlaces;
 use crate::{
     dynamics::pose::{BeamPose, TreeInWind},
+    query::passage::{LocalRay, Passed, depth_until},
     sway::{ActiveSway, InCanopy, TreePose, WeightedResponse, uniform_scale, world_from_local},
     tree::{
         Grown, Season, Tree, TreeModel,
-        body::{BodyRay, PosedBody, TreeCapsule},
+        body::{PosedBody, TreeCapsule},
     },
     wind::WindClock,
 };
 use bevy::{
     ecs::{entity::EntityHashMap, system::SystemParam},
-    math::{Affine3A, Vec3A},
+    math::Vec3A,
     prelude::*,
 };
 use std::sync::{Arc, Mutex, PoisonError};
@@ -34,8 +35,8 @@ type TreeData =
 /// Asks what rays meet: trunks and limbs where they are in the wind now, and how much leaves and twigs let through.
 ///
 /// It knows the trees that are entities, where transforms were propagated last. For stems farther away ask
-/// [`ForestCells::store`](crate::forest::ForestCells::store). A tree is posed once in a frame, when the first ray comes near; the first
-/// rays through a wood cost some ten microseconds for each tree about them, later ones one or two.
+/// [`ForestCells::store`](crate::forest::ForestCells::store). A tree is posed once in a frame, when the first ray comes near: that
+/// costs more than all rays through it.
 #[derive(SystemParam)]
 pub struct TreeRays<'w, 's> {
     places: Res<'w, TreePlaces>,
@@ -94,19 +95,6 @@ impl TreeTrace {
     }
 }
 
-/// A ray in a tree's own coordinates.
-struct LocalRay {
-    ray: BodyRay,
-    /// Length in the world of a metre of it.
-    scale: f32,
-    /// Where it begins on the ray in the world, m.
-    begins_m: f32,
-    world_from_local: Affine3A,
-}
-
-/// A part of the way through a crown: from, to, m, and its optical depth.
-type Passed = (f32, f32, f32, Entity);
-
 impl TreeRays<'_, '_> {
     /// What a ray meets within a length, m.
     #[must_use]
@@ -123,7 +111,7 @@ impl TreeRays<'_, '_> {
         longest_m: f32,
         counts: impl Fn(Entity) -> bool,
     ) -> TreeTrace {
-        let mut passed: Vec<Passed> = Vec::new();
+        let mut passed: Vec<Passed<Entity>> = Vec::new();
         let wood = self.meet(origin, direction, longest_m, counts, |tree, near| {
             let leaf_share = self.leaf_share(near);
             near.model.body.pass_crown(near.posed, &near.local.ray, leaf_share, |step| {
@@ -133,9 +121,8 @@ impl TreeRays<'_, '_> {
         });
         let end_m = wood.map_or(longest_m, |wood| wood.distance_m);
         let (depth, half) = depth_until(passed, end_m);
-        let half = half.map(|(distance_m, tree)| {
-            CrownHit { tree, distance_m, position: origin + distance_m * *direction }
-        });
+        let half =
+            half.map(|(distance_m, tree)| CrownHit { tree, distance_m, position: origin + distance_m * *direction });
         TreeTrace { wood, transmittance: (-depth).exp(), half }
     }
 
@@ -187,7 +174,7 @@ impl TreeRays<'_, '_> {
             let Ok((of, grown, at, _, pose)) = self.trees.get(tree) else { return true };
             let Some(model) = self.models.get(&grown.model).filter(|_| counts(tree)) else { return true };
             let bounds = if pose.is_some() { model.bounds } else { model.bounds_under(self.pressure()) };
-            let Some(local) = LocalRay::new(at, origin, *direction, end_m, [bounds.min, bounds.max]) else {
+            let Some(local) = LocalRay::new(at.affine(), origin, *direction, end_m, [bounds.min, bounds.max]) else {
                 return true;
             };
             let posed = self.posed(tree, model);
@@ -256,86 +243,4 @@ struct NearTree<'a> {
     model: &'a TreeModel,
     posed: &'a PosedBody,
     local: LocalRay,
-}
-
-impl LocalRay {
-    /// A ray as far as it is in a tree's box, tree-local; `None` where it misses that.
-    fn new(at: &GlobalTransform, origin: Vec3, direction: Vec3, end_m: f32, bounds: [Vec3; 2]) -> Option<Self> {
-        let world_from_local = at.affine();
-        let local_from_world = world_from_local.inverse();
-        let way = local_from_world.transform_vector3(direction);
-        let scale = 1.0 / way.length();
-        if !(scale.is_finite() && way.is_finite() && scale > 0.0) {
-            return None;
-        }
-        let (from, way) = (local_from_world.transform_point3(origin), way * scale);
-        let [mut enters_m, mut leaves_m] = [0.0, end_m / scale];
-        for axis in 0..3 {
-            let [one, other] = bounds.map(|bound| (bound[axis] - from[axis]) / way[axis]);
-            // On an axis across the ray both are infinite, or no numbers on the very border.
-            enters_m = one.min(other).max(enters_m);
-            leaves_m = one.max(other).min(leaves_m);
-        }
-        (enters_m <= leaves_m).then(|| {
-            let ray = BodyRay { origin: from + enters_m * way, direction: way, part_m: [0.0, leaves_m - enters_m] };
-            Self { ray, scale, begins_m: enters_m * scale, world_from_local }
-        })
-    }
-}
-
-/// The optical depth of a way up to its end, m, and where it is ln 2 and by whose leaves.
-fn depth_until(mut passed: Vec<Passed>, end_m: f32) -> (f32, Option<(f32, Entity)>) {
-    passed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.3.cmp(&b.3)));
-    let (mut depth, mut half) = (0.0, None);
-    for (from_m, to_m, whole, tree) in passed {
-        let share = ((end_m - from_m) / (to_m - from_m)).clamp(0.0, 1.0);
-        let more = if share > 0.0 { share * whole } else { 0.0 };
-        if half.is_none() && depth + more >= std::f32::consts::LN_2 {
-            let place = (std::f32::consts::LN_2 - depth) / whole;
-            half = Some((from_m + place * (to_m - from_m), tree));
-        }
-        depth += more;
-    }
-    (depth, half)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn half_of_a_ray_is_stopped_where_its_depth_is_ln_2() {
-        let [one, other] = [1, 2].map(|index| Entity::from_raw_u32(index).unwrap());
-        let half = std::f32::consts::LN_2;
-        // Two crowns that overlap, in any order.
-        let passed = vec![(10.0, 14.0, half, other), (4.0, 6.0, 0.5 * half, one)];
-        let (depth, place) = depth_until(passed.clone(), 100.0);
-        assert!((depth - 1.5 * half).abs() < 1e-6);
-        assert!(place.is_some_and(|(at_m, tree)| (at_m - 12.0).abs() < 1e-5 && tree == other));
-        let (depth, place) = depth_until(passed.clone(), 11.0);
-        assert!((depth - 0.75 * half).abs() < 1e-6 && place.is_none());
-        assert_eq!(depth_until(passed, 3.0), (0.0, None));
-        assert_eq!(depth_until(Vec::new(), 3.0), (0.0, None));
-    }
-
-    /// Places on a ray that a turned, mirrored and scaled tree knows are those of the world.
-    #[test]
-    fn a_local_ray_is_the_ray_in_the_world() {
-        let tree = Transform::from_xyz(300.0, -4.0, 120.0).with_rotation(Quat::from_rotation_y(1.1));
-        let at = GlobalTransform::from(tree.with_scale(Vec3::new(-1.5, 1.5, 1.5)));
-        let (origin, target) = (Vec3::new(280.0, 9.0, 100.0), Vec3::new(300.5, 5.0, 120.5));
-        let direction = (target - origin).normalize();
-        let bounds = [Vec3::new(-4.0, 0.0, -4.0), Vec3::new(4.0, 12.0, 4.0)];
-        let local = LocalRay::new(&at, origin, direction, 100.0, bounds).unwrap();
-        for step in 0..=10 {
-            let part_m = 0.1 * step as f32 * local.ray.part_m[1];
-            let there = at.transform_point(local.ray.origin + part_m * local.ray.direction);
-            let here = origin + (local.begins_m + local.scale * part_m) * direction;
-            assert!(there.distance(here) < 1e-3, "{there} for {here}");
-        }
-        assert!(LocalRay::new(&at, origin, -direction, 100.0, bounds).is_none());
-        assert!(LocalRay::new(&at, origin, direction, 5.0, bounds).is_none(), "too short");
-        let flat = GlobalTransform::from(tree.with_scale(Vec3::ZERO));
-        assert!(LocalRay::new(&flat, origin, direction, 100.0, bounds).is_none());
-    }
 }

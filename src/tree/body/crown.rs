@@ -8,7 +8,11 @@
 //! The grid is that of the tree at rest. In the wind its layers are moved along with the stem, each as a whole: a ray is followed
 //! through them one by one. Branches that sway on their own move less than a cell.
 
-use super::{BodyRay, limbs::Limbs};
+use super::{
+    BodyRay,
+    limbs::Limbs,
+    stems::{StemPlace, stem_places},
+};
 use crate::{
     dynamics::pose::BeamPose,
     tree::{
@@ -48,14 +52,6 @@ pub struct CrownDensity {
     leaf_area_m2: f32,
     /// For each border of a layer the places of stems there.
     stems: Vec<Vec<StemPlace>>,
-}
-
-/// A place on a stem: the number of its limb, where on that, and where at rest, m.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct StemPlace {
-    limb: usize,
-    s: f32,
-    rest: Vec3,
 }
 
 /// A part of a ray within one cell of a crown.
@@ -276,29 +272,4 @@ fn twigs(skeleton: &Skeleton, limbs: &Limbs) -> Vec<(Vec3, f32)> {
         [0.25, 0.75].map(|s| (beam.path(s), TWIGS * FRAC_PI_2 * beam.radius_m(s) * 0.5 * beam.length_m))
     });
     halves.filter(|(at, area_m2)| at.is_finite() && area_m2.is_finite()).collect()
-}
-
-/// Where stems are at a height, m; above them all the top of the highest, and below the foot of the lowest.
-fn stem_places(limbs: &Limbs, height_m: f32) -> Vec<StemPlace> {
-    let stems = || limbs.limbs().iter().enumerate().filter(|(_, limb)| limb.order == 0);
-    let at = |limb: usize, s: f32| {
-        let [root, middle, tip] = limbs.limbs()[limb].axis;
-        let axis = if s < 0.5 { root.lerp(middle, 2.0 * s) } else { middle.lerp(tip, 2.0 * s - 1.0) };
-        StemPlace { limb, s, rest: axis.with_y(height_m) }
-    };
-    let crossing = stems().filter_map(|(index, limb)| {
-        let [root, _, tip] = limb.axis;
-        (root.y <= height_m && height_m < tip.y).then(|| at(index, (height_m - root.y) / (tip.y - root.y)))
-    });
-    let crossing: Vec<_> = crossing.collect();
-    if !crossing.is_empty() {
-        return crossing;
-    }
-    let highest = stems().max_by(|(_, a), (_, b)| a.axis[2].y.total_cmp(&b.axis[2].y));
-    let Some((highest, limb)) = highest else { return Vec::new() };
-    if height_m >= limb.axis[2].y {
-        return vec![at(highest, 1.0)];
-    }
-    let lowest = stems().min_by(|(_, a), (_, b)| a.axis[0].y.total_cmp(&b.axis[0].y));
-    lowest.map(|(lowest, _)| at(lowest, 0.0)).into_iter().collect()
 }

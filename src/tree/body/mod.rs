@@ -5,12 +5,14 @@
 //! | `round_cone` | A piece of wood with round ends, as a ray meets it. |
 //! | `limbs` | Trunk and main limbs: beams that are posed as all others, each as two round cones. |
 //! | `crown` | Leaves and twigs as densities in a coarse grid, which lean with the stem: how much of a ray they let through. |
+//! | `stems` | Where stems are at a height. |
 //!
 //! A body belongs to a model, and so is made in the background. Everything is in the tree's own coordinates, in metres.
 
 mod crown;
 mod limbs;
 mod round_cone;
+mod stems;
 
 pub use crown::{CrownDensity, CrownStep};
 pub use limbs::{Limb, LimbHit, Limbs, TreeCapsule};

@@ -27,8 +27,7 @@ pub(in crate::tree) fn card_cover(leaf: &Leaf, seed: u64) -> f32 {
         leaves.iter().any(|leaf| {
             let middle = leaf.root + leaf.direction * (0.5 * leaf.length);
             let reach = (blade_reach + leaf.bend.abs()) * leaf.length;
-            point.distance_squared(middle) <= reach * reach
-                && outline::distance(&margin, leaf.local(point)) > 0.0
+            point.distance_squared(middle) <= reach * reach && outline::distance(&margin, leaf.local(point)) > 0.0
         })
     });
     covered.count() as f32 / PLACES as f32
