@@ -9,8 +9,8 @@
 //! through them one by one. Branches that sway on their own move less than a cell.
 
 use super::{
-    BodyRay,
     limbs::Limbs,
+    ray::BodyRay,
     stems::{StemPlace, stem_places},
 };
 use crate::{

@@ -1,6 +1,6 @@
 //! Trunk and main limbs: the thickest beams of a tree, posed as they are in the whole tree.
 
-use super::{BodyRay, round_cone::RoundCone};
+use super::{ray::BodyRay, round_cone::RoundCone};
 use crate::{
     dynamics::{
         beam::{BeamDynamics, NO_PARENT},

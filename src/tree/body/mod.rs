@@ -2,6 +2,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `ray` | A way through it. |
 //! | `round_cone` | A piece of wood with round ends, as a ray meets it. |
 //! | `limbs` | Trunk and main limbs: beams that are posed as all others, each as two round cones. |
 //! | `crown` | Leaves and twigs as densities in a coarse grid, which lean with the stem: how much of a ray they let through. |
@@ -11,11 +12,13 @@
 
 mod crown;
 mod limbs;
+mod ray;
 mod round_cone;
 mod stems;
 
 pub use crown::{CrownDensity, CrownStep};
 pub use limbs::{Limb, LimbHit, Limbs, TreeCapsule};
+pub use ray::BodyRay;
 pub use round_cone::RoundCone;
 
 use super::{skeleton::Skeleton, species::Species, vertices::LeafVertices};
@@ -41,17 +44,6 @@ pub struct PosedBody {
     cones: Vec<RoundCone>,
     /// How far the crown has been moved at each border of its layers, m.
     shifts: Vec<Vec3>,
-}
-
-/// A straight way through a tree: from `origin` along the unit vector `direction`, over `[from, to]`, m.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodyRay {
-    /// Where distances are measured from, m.
-    pub origin: Vec3,
-    /// Unit vector.
-    pub direction: Vec3,
-    /// The part of the way that counts, m.
-    pub part_m: [f32; 2],
 }
 
 impl TreeBody {
