@@ -100,8 +100,11 @@ fn raws(cases: u32) {
         RawSample::F32BigEndian,
     ];
     run("raw", cases, &samples, |sample, random| {
-        let bytes: Vec<u8> = (0..random.random_range(0..200)).map(|_| random.random()).collect();
         let (columns, rows) = (random.random_range(0..12), random.random_range(0..12));
+        let wide = if matches!(sample, RawSample::F32LittleEndian | RawSample::F32BigEndian) { 4 } else { 2 };
+        let fitting = (columns * rows * wide) as usize;
+        let length = if random.random() { fitting } else { random.random_range(0..200) };
+        let bytes: Vec<u8> = (0..length).map(|_| random.random()).collect();
         let raw = Some(RawLayout { columns, rows, sample: *sample });
         read_elevation("a.raw", &bytes, &ElevationSettings { raw, ..told() })
     });

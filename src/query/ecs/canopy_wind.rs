@@ -16,8 +16,8 @@ const OPEN_SHARE: f32 = 0.02;
 
 /// Asks for the wind at a place: among trees it is weaker than in the open, and gustier. For sails, clothes, smoke and sound.
 ///
-/// The stands of the trees within 16 m count, the nearer the more ([`InCanopy`]): the answer is continuous. Where there are none it is
-/// what [`ActiveWind::sample`] says.
+/// The stands of the trees within 16 m count, the nearer the more ([`InCanopy`]): over ground that is told the answer is continuous.
+/// Where there are none it is what [`ActiveWind::sample`] says.
 #[derive(SystemParam)]
 pub struct WindInTrees<'w, 's> {
     wind: Res<'w, ActiveWind>,
