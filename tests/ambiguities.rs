@@ -65,8 +65,7 @@ fn no_system_of_ours_is_ambiguous_with_another() {
     let mut app = support::headless_app(Duration::ZERO, None);
     support::capture::begin(&mut app).expect("a graphics device");
     app.update();
-    let labels =
-        [First.intern(), PreUpdate.intern(), Update.intern(), PostUpdate.intern(), Last.intern(), FixedUpdate.intern()];
+    let labels = [First.intern(), PreUpdate.intern(), Update.intern(), PostUpdate.intern(), Last.intern()];
     let mut found = String::new();
     for label in labels {
         for Ambiguity { systems: [one, other], on } in ambiguities(app.world_mut(), label) {

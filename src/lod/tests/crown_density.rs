@@ -36,7 +36,7 @@ fn blocked(name: &str, parts: TreeParts, leaf_share: f32) -> [f32; 2] {
 fn a_body_blocks_as_many_rays_as_the_tree_that_is_drawn() {
     for name in ["oak", "birch", "fir", "scots_pine", "hazel", "willow"] {
         // Bare crowns are the coarser match: twigs stand in rows, not at random.
-        for (parts, leaf_share, slack) in [(TreeParts::All, 1.0, 0.05), (TreeParts::Wood, 0.0, 0.1)] {
+        for (parts, leaf_share, slack) in [(TreeParts::All, 1.0, 0.05), (TreeParts::Wood, 0.0, 0.12)] {
             let [drawn, body] = blocked(name, parts, leaf_share);
             println!("{name} {parts:?}: {drawn:.3} drawn, {body:.3} by its body");
             assert!((drawn - body).abs() < slack, "{name} {parts:?}: {drawn} drawn, {body} by its body");

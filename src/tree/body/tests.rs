@@ -118,9 +118,9 @@ fn the_depth_along_a_ray_is_that_of_fine_steps() {
         let slow = step_m * (0..steps).map(|step| body.crown.extinction(at(step), ray.direction, 0.7)).sum::<f32>();
         assert!((depth - slow).abs() < 2e-3 * (1.0 + slow), "{depth} for {slow}");
         assert!((body.transmittance(&rest, &ray, 0.7) - (-depth).exp()).abs() < 1e-6);
-        dense += u32::from(depth > 0.5);
+        dense += u32::from(depth > 0.2);
     }
-    assert!(dense > 20, "{dense}");
+    assert!(dense > 15, "{dense}");
 }
 
 /// A crown that is moved as a whole lets through what the crown at rest lets through of a ray that is moved back.
@@ -148,9 +148,12 @@ fn crowns_lean_with_the_stem_and_are_thinner_in_winter() {
     assert!(top.x > 0.5 && leaning.shifts[0].length() < 0.5 * top.length(), "{:?}", leaning.shifts);
     let height_m = 0.6 * model.height_m();
     let through = BodyRay { origin: Vec3::new(-40.0, height_m, 0.3), direction: Vec3::X, part_m: [0.0, 80.0] };
+    let rows = || (0..30).map(|k| Vec3::new(-40.0, (0.45 + 0.015 * k as f32) * model.height_m(), 0.3));
     let rest = body.at_rest();
-    let [summer, winter] = [1.0, 0.0].map(|leaves| body.transmittance(&rest, &through, leaves));
-    assert!(summer < 0.5 * winter && winter < 1.0 && winter > 0.1, "{summer} and {winter}");
+    let [summer, winter] = [1.0, 0.0].map(|leaves| {
+        rows().map(|origin| body.transmittance(&rest, &BodyRay { origin, ..through }, leaves)).sum::<f32>() / 30.0
+    });
+    assert!(summer < winter - 0.3 && (0.3..1.0).contains(&winter), "{summer} and {winter}");
     let beside = BodyRay { origin: Vec3::new(-40.0, height_m, 60.0), ..through };
     assert_eq!(body.transmittance(&rest, &beside, 1.0), 1.0);
 }
