@@ -15,7 +15,7 @@ pub enum WindwoodSystems {
     /// [`WindCell`](crate::wind::WindCell) gets the wind at its place. Change the [`Wind`](crate::wind::Wind) before it, or
     /// in `Update` for the next frame.
     AdvanceWind,
-    /// In `Update`. Cells of forests and chunks of ground come and go about the viewers. Nothing precedes it: move viewers
+    /// In `Update`. Cells of forests and chunks of ground come and go about the viewers, and colliders of trees. Nothing precedes it: move viewers
     /// before it.
     Stream,
     /// In `Update`, after `Stream`. Species that were loaded or changed are baked in the background, and so are meadows and
@@ -29,8 +29,7 @@ pub enum WindwoodSystems {
     /// In `PostUpdate`, before transforms are propagated. Articulated trees move their beams and leaves, by the wind of
     /// `AdvanceWind`.
     Pose,
-    /// In `PostUpdate`, after transforms are propagated. Trees that have come, gone or moved are noted for rays, listeners are told, and
-    /// trees about the viewers get colliders.
+    /// In `PostUpdate`, after transforms are propagated. Trees that have come, gone or moved are noted for rays, and listeners are told.
     Query,
     /// In `PostUpdate`, after transforms are propagated. The clock of the frame, and tables that changed, are sent to the
     /// GPU.

@@ -31,8 +31,10 @@ impl Plugin for TreeQueryPlugin {
             .init_resource::<TreeColliderSettings>()
             .init_resource::<TreePlaces>()
             .init_resource::<PosedTrees>();
-        let query = timed!(app, track_trees, forget_poses, tell_listeners, give_colliders);
+        let query = timed!(app, track_trees, forget_poses, tell_listeners);
+        let give = timed!(app, give_colliders);
         app.add_systems(PreUpdate, forget_poses.after(WindwoodSystems::AdvanceWind))
+            .add_systems(Update, give.in_set(WindwoodSystems::Stream))
             .add_systems(PostUpdate, query.chain().in_set(WindwoodSystems::Query));
     }
 }
