@@ -16,4 +16,4 @@ mod venation;
 pub(in crate::tree) use cover::card_cover;
 pub use ellipsoids::{LeafEllipsoids, LeafKind};
 pub use settings::{Leaf, LeafArrangement, LeafMargin, LeafShape};
-pub use texture::{LeafTextures, leaf_textures};
+pub use texture::{LeafTextures, bare_spray_texture, leaf_textures};
