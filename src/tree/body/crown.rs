@@ -33,7 +33,7 @@ const CLOSED: f32 = 0.5;
 /// Share of the polygons of an impressionist's crown that their texture covers: fitted to rays through the shipped ones.
 const POLYGON_COVER: f32 = 0.55;
 /// Twigs stand in one another's shade along their branches, and not at random within a cell: so much of what they show counts. Fitted to
-/// rays through the shipped species in winter.
+/// rays through the wood of the shipped species; the twigs of sprays are not among it.
 const TWIGS: f32 = 0.7;
 /// Layers that a storm bends into one another keep this share of their thickness.
 const THINNEST_LAYER: f32 = 0.1;
