@@ -38,7 +38,9 @@ fn settle(app: &mut App) {
         std::thread::sleep(Duration::from_millis(5));
         let world = app.world_mut();
         let waiting = world.query_filtered::<(), (With<Tree>, Without<Grown>)>().iter(world).count();
-        waiting == 0 && world.resource::<ActiveSway>().is_settled()
+        let (asked, active) = (world.resource::<Wind>().speed, world.resource::<ActiveWind>());
+        let is_asked = active.newest().is_some_and(|field| field.settings().speed == asked);
+        waiting == 0 && is_asked && active.is_settled() && world.resource::<ActiveSway>().is_settled()
     });
     assert!(ready, "trees and wind did not come about in a minute");
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(FRAME_S)));
