@@ -47,7 +47,8 @@ impl Leaves<'_, '_> {
             let leaf_share = model.leaf_season.share(self.season.wrapped() + tree.season_shift());
             let area_m2 = crown.leaf_area_m2() * scale * scale * leaf_share;
             // What is no number is not heard either.
-            if !(area_m2 > LEAST_SHARE * distance_m * distance_m) {
+            let share = area_m2 / (distance_m * distance_m);
+            if share.is_nan() || share <= LEAST_SHARE {
                 return;
             }
             let canopy = canopy.copied().unwrap_or_default();

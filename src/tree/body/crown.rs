@@ -179,8 +179,7 @@ impl CrownDensity {
     ) {
         let [low_m, high_m] = [borders[layer], borders[layer + 1]];
         let [from_m, to_m] = clipped(ray.part_m, ray.origin.y, ray.direction.y, [low_m, high_m]);
-        // NaN is not a part of it either.
-        if !(from_m < to_m) {
+        if from_m >= to_m || (to_m - from_m).is_nan() {
             return;
         }
         // Where the ray is at rest, in cells.
@@ -218,7 +217,7 @@ fn walk(from: Vec2, to: Vec2, mut visit: impl FnMut(IVec2, [f32; 2])) {
     let side = ACROSS as f32;
     let within = clipped([0.0, 1.0], from.x, way.x, [0.0, side]);
     let [enters, leaves] = clipped(within, from.y, way.y, [0.0, side]);
-    if !(enters < leaves) {
+    if enters >= leaves || (leaves - enters).is_nan() {
         return;
     }
     let last = IVec2::splat(ACROSS as i32 - 1);
