@@ -100,10 +100,12 @@ mod tests {
             let mut read_back = vec![0; 4 * 32 * 16];
             format.decompress(&blocks, 32, 16, &mut read_back);
             let pairs = texture.mips[0].chunks_exact(channels).zip(read_back.chunks_exact(4));
-            let differences =
-                pairs.flat_map(|(was, is)| (0..compared).map(|channel| was[channel].abs_diff(is[channel])));
-            let worst = differences.max().unwrap();
-            assert!(worst <= 16, "{texels:?}: {worst} of 255");
+            let squares =
+                pairs.flat_map(|(was, is)| (0..compared).map(|it| f32::from(was[it].abs_diff(is[it])).powi(2)));
+            let rms = (squares.sum::<f32>() / (compared * 32 * 16) as f32).sqrt();
+            // Within a block a channel rises by 37 at most, and four colours on a line stand for that: 6 at worst, and their ends have
+            // five bits, 4 at worst.
+            assert!(rms < 6.0, "{texels:?}: {rms} of 255");
         }
     }
 
