@@ -114,11 +114,10 @@ fn a_bullet_hits_the_trunk_and_leaves_hide_what_is_behind() {
     let sight = |app: &mut App| {
         let rows = (0..40).map(|k| 0.5 * model.height_m() + 0.01 * model.height_m() * k as f32);
         let rows: Vec<f32> = rows.collect();
-        let seen = ask(app, move |rays| {
+        ask(app, move |rays| {
             let through = |y: &f32| rays.trace(Vec3::new(10.3, *y, -30.0), Dir3::Z, 60.0).transmittance;
             rows.iter().map(through).sum::<f32>() / rows.len() as f32
-        });
-        seen
+        })
     };
     let summer = sight(&mut app);
     *app.world_mut().resource_mut::<Season>() = Season::WINTER;
