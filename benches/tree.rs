@@ -2,7 +2,10 @@
 
 use std::hint::black_box;
 
-use bevy_windwood::tree::{Species, TreeModel, bark::bark_textures, individual::grow, leaf::leaf_textures};
+use bevy::math::Vec3;
+use bevy_windwood::tree::{
+    Species, TreeModel, bark::bark_textures, body::BodyRay, individual::grow, leaf::leaf_textures,
+};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 fn oak() -> Species {
@@ -65,5 +68,30 @@ fn textures(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, growth, bake, species, textures);
+/// Rays through a mature oak.
+fn body(criterion: &mut Criterion) {
+    let oak = oak();
+    let model = TreeModel::bake(&oak, oak.age.mature_years, 1);
+    let (body, posed) = (&model.body, model.body.at_rest());
+    let mut step = 0_u32;
+    let mut ray = || {
+        step = step.wrapping_add(1);
+        let share = |of: u32| (step.wrapping_mul(of) % 1000) as f32 / 1000.0 - 0.5;
+        let target = Vec3::new(6.0 * share(7919), model.height_m() * (0.5 + 0.8 * share(104_729)), 6.0 * share(15_485));
+        let direction = Vec3::new(share(31), 0.4 * share(17), 1.0).normalize();
+        BodyRay { origin: target - 12.0 * direction, direction, part_m: [0.0, 24.0] }
+    };
+    let mut group = criterion.benchmark_group("body");
+    group.bench_function("hit", |bencher| bencher.iter(|| body.hit(&posed, black_box(&ray()))));
+    group.bench_function("transmittance", |bencher| {
+        bencher.iter(|| body.transmittance(&posed, black_box(&ray()), 1.0));
+    });
+    group.bench_function("pose", |bencher| {
+        let poses = vec![bevy_windwood::dynamics::BeamPose::REST; body.limbs.beams().len()];
+        bencher.iter(|| body.posed(black_box(&poses)));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, growth, bake, species, textures, body);
 criterion_main!(benches);

@@ -39,6 +39,7 @@
 //! | [`lod`] | lower levels of detail of a baked tree: decimated meshes, impostors, envelopes | tree, texture, dynamics |
 //! | [`sway`] | how trees answer the wind: response tables, fades, articulated trees; no rendering | tree, wind, dynamics |
 //! | `render` | how trees are drawn: prepared species, instances, LOD selection, shaders, impostors | sway, lod, tree, wind, dynamics, texture |
+//! | [`query`] | what games ask: rays, colliders, the wind among trees, [`WindListener`](query::WindListener) | sway, tree, wind, dynamics |
 //! | [`grass`] | meadows that bend in the wind, [`GrassPatch`](grass::GrassPatch) | sway, render |
 //! | [`fire`] | fires that lean with it and give light, [`Fire`](fire::Fire) | sway, wind, render |
 //! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Terrain`](terrain::Terrain) | texture, render |
@@ -51,7 +52,9 @@
 //!
 //! # Features
 //! `render` (on by default) holds all drawing. Without it, [`WindwoodMinimalPlugins`] moves the same trees on a server or in
-//! a test.
+//! a test. `picking` makes trees pickable by Bevy's pointers, `avian` makes their colliders bodies of `avian3d`.
+
+#![forbid(unsafe_code)]
 
 mod background;
 mod constants;
@@ -74,6 +77,7 @@ pub mod fire;
 pub mod forest;
 pub mod grass;
 pub mod lod;
+pub mod query;
 #[cfg(feature = "render")]
 pub mod render;
 pub mod scatter;
@@ -105,6 +109,7 @@ pub mod prelude {
             StemId, Stump,
         },
         grass::{GrassField, GrassGround, GrassLook, GrassPatch, GrassResponse, Sward, Tuft},
+        query::{TreeColliderSettings, TreeColliders, TreeRays, WindInTrees, WindListener},
         sway::{ActiveSway, InCanopy, SwaySettings},
         terrain::{GroundLook, Terrain, TerrainFile, TerrainSettings},
         tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Season, Species, Tree, TreeBeams, TreeLeaves},
@@ -126,6 +131,8 @@ impl PluginGroup for WindwoodPlugins {
             .add(terrain::TerrainDrawPlugin)
             .add(forest::ForestRenderPlugin)
             .add(wind::WindGizmoPlugin);
+        #[cfg(feature = "picking")]
+        let group = group.add(query::TreePickingPlugin);
         group
     }
 }
@@ -141,6 +148,7 @@ impl PluginGroup for WindwoodMinimalPlugins {
             .add(tree::TreePlugin)
             .add(terrain::TerrainPlugin)
             .add(sway::SwayPlugin)
+            .add(query::TreeQueryPlugin)
             .add(grass::GrassPlugin)
             .add(fire::FirePlugin)
             .add(forest::ForestPlugin)
@@ -170,4 +178,6 @@ mod guide {
     struct Servers;
     #[doc = include_str!("../docs/guide/shaders.md")]
     struct Shaders;
+    #[doc = include_str!("../docs/guide/queries.md")]
+    struct Queries;
 }

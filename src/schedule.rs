@@ -8,14 +8,14 @@ use bevy::{camera::visibility::VisibilitySystems, prelude::*};
 /// |---|---|
 /// | `PreUpdate` | `AdvanceWind` |
 /// | `Update` | `Stream`, `Bake`, `SelectLod` |
-/// | `PostUpdate` | `Pose`, transform propagation, `Upload`; `Cull` beside it, before visibility is propagated |
+/// | `PostUpdate` | `Pose`, transform propagation, `Upload` and `Query`; `Cull` beside it, before visibility is propagated |
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum WindwoodSystems {
     /// In `PreUpdate`. The clock moves on, wind fields that are ready are taken over, every
     /// [`WindCell`](crate::wind::WindCell) gets the wind at its place. Change the [`Wind`](crate::wind::Wind) before it, or
     /// in `Update` for the next frame.
     AdvanceWind,
-    /// In `Update`. Cells of forests and chunks of ground come and go about the viewers. Nothing precedes it: move viewers
+    /// In `Update`. Cells of forests and chunks of ground come and go about the viewers, and colliders of trees. Nothing precedes it: move viewers
     /// before it.
     Stream,
     /// In `Update`, after `Stream`. Species that were loaded or changed are baked in the background, and so are meadows and
@@ -29,6 +29,8 @@ pub enum WindwoodSystems {
     /// In `PostUpdate`, before transforms are propagated. Articulated trees move their beams and leaves, by the wind of
     /// `AdvanceWind`.
     Pose,
+    /// In `PostUpdate`, after transforms are propagated. Trees that have come, gone or moved are noted for rays, and listeners are told.
+    Query,
     /// In `PostUpdate`, after transforms are propagated. The clock of the frame, and tables that changed, are sent to the
     /// GPU.
     Upload,
@@ -36,12 +38,13 @@ pub enum WindwoodSystems {
 
 /// Orders the sets. Every plugin that adds systems to one of them calls this: it does no harm to do so again.
 pub(crate) fn configure_sets(app: &mut App) {
-    use WindwoodSystems::{Bake, Cull, Pose, SelectLod, Stream, Upload};
+    use WindwoodSystems::{Bake, Cull, Pose, Query, SelectLod, Stream, Upload};
     app.configure_sets(Update, (Stream, Bake, SelectLod).chain()).configure_sets(
         PostUpdate,
         (
             Pose.before(TransformSystems::Propagate),
             Cull.after(VisibilitySystems::UpdateFrusta).before(VisibilitySystems::VisibilityPropagate),
+            Query.after(TransformSystems::Propagate),
             Upload.after(TransformSystems::Propagate),
         ),
     );

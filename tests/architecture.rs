@@ -26,7 +26,7 @@ use circles::circles;
 use modules::{Crate, File};
 
 /// A room and the rooms it may import. A room that is not here may not exist.
-const MAY_KNOW: [(&str, &[&str]); 13] = [
+const MAY_KNOW: [(&str, &[&str]); 14] = [
     ("wind", &[]),
     ("dynamics", &["wind"]),
     ("texture", &[]),
@@ -36,6 +36,7 @@ const MAY_KNOW: [(&str, &[&str]); 13] = [
     ("tree", &["dynamics", "texture"]),
     ("lod", &["tree", "texture", "dynamics"]),
     ("sway", &["tree", "wind", "dynamics"]),
+    ("query", &["sway", "tree", "wind", "dynamics"]),
     ("render", &["sway", "lod", "tree", "texture", "wind", "dynamics"]),
     ("grass", &["sway", "render"]),
     ("fire", &["sway", "wind", "render"]),

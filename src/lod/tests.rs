@@ -14,6 +14,7 @@ use crate::{
 use bevy::math::UVec2;
 use std::{fs, path::Path};
 
+mod crown_density;
 mod envelope;
 mod impostor;
 mod ray_oracles;

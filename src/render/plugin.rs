@@ -116,7 +116,7 @@ impl Plugin for TreeRenderPlugin {
                 prepare.chain().after(store_baked_models).in_set(WindwoodSystems::Bake).run_if(can_draw),
                 draw.chain().in_set(WindwoodSystems::SelectLod).run_if(can_draw),
                 light,
-                pack,
+                pack.before(WindwoodSystems::SelectLod),
             ),
         )
         .add_systems(

@@ -141,12 +141,12 @@ impl TreePose {
 }
 
 /// The uniform scale nearest to that of a tree, without its sign.
-fn uniform_scale(stands: &GlobalTransform) -> f32 {
+pub(crate) fn uniform_scale(stands: &GlobalTransform) -> f32 {
     stands.affine().matrix3.determinant().abs().cbrt()
 }
 
 /// The rotation of a tree, after a mirror image along x if it is mirrored.
-fn world_from_local(stands: &GlobalTransform) -> Mat3 {
+pub(crate) fn world_from_local(stands: &GlobalTransform) -> Mat3 {
     let (scale, rotation, _) = stands.to_scale_rotation_translation();
     Mat3::from_quat(rotation) * Mat3::from_diagonal(Vec3::new(scale.x.signum(), 1.0, 1.0))
 }
@@ -154,8 +154,8 @@ fn world_from_local(stands: &GlobalTransform) -> Mat3 {
 /// Moves beam entities to where their cross-sections are.
 pub(super) fn pose_beams(
     models: Res<Assets<TreeModel>>,
-    trees: Query<(&Grown, &Transform, &GlobalTransform, Has<ChildOf>, &TreePose), Without<Beam>>,
-    mut beams: Query<(&Beam, &BeamOf, &mut Transform)>,
+    trees: Query<(&Grown, &Transform, &GlobalTransform, Has<ChildOf>, &TreePose), (Without<Beam>, Without<Leaf>)>,
+    mut beams: Query<(&Beam, &BeamOf, &mut Transform), Without<Leaf>>,
 ) {
     beams.par_iter_mut().for_each(|(beam, of, mut transform)| {
         let Ok((grown, tree_transform, global, is_child, tree)) = trees.get(of.0) else { return };
@@ -176,7 +176,10 @@ pub(super) fn turn_leaves(
     species_models: Res<SpeciesModels>,
     clock: Res<WindClock>,
     models: Res<Assets<TreeModel>>,
-    trees: Query<(&Tree, &Grown, &Transform, &GlobalTransform, Has<ChildOf>, &TreePose), Without<Leaf>>,
+    trees: Query<
+        (&Tree, &Grown, &Transform, &GlobalTransform, Has<ChildOf>, &TreePose),
+        (Without<Leaf>, Without<Beam>),
+    >,
     mut leaves: Query<(&Leaf, &LeafOf, &mut Transform)>,
 ) {
     let seconds = leaf_clock_s(clock.time_s);

@@ -15,6 +15,7 @@ mod response;
 
 pub use active::{ActiveSway, FLUTTER_PERIOD_S, WeightedResponse, leaf_clock_s, wrapped_time_s};
 pub use articulated::TreePose;
+pub(crate) use articulated::{uniform_scale, world_from_local};
 pub use components::InCanopy;
 pub use plugin::SwayPlugin;
 pub use response::{SwaySettings, WindResponse};

@@ -17,6 +17,7 @@
 //! | wood mesh | skeleton -> one tube a branch, flared where it leaves its parent | `wood_mesh.rs`, `tube.rs`, `joint/` |
 //! | leaf mesh | skeleton -> one card a spray, or the crown's polygons or ellipsoids | `leaf_mesh.rs` |
 //! | bounds | vertices, beams -> the box that holds the tree in every wind | `bounds.rs` |
+//! | body | beams, leaf mesh -> trunk and limbs for rays and colliders, leaves as a density | [`body`] |
 //! | **model** | all of the above, called from one place | [`TreeModel::bake`], in `model.rs` |
 //!
 //! Beside the model a species has textures, which do not depend on the individual: [`textures`] renders them from
@@ -28,6 +29,7 @@
 //! `ecs/missing_species.rs` tells which trees wait for a species that cannot be loaded. [`Season`] is the time of the year.
 
 pub mod bark;
+pub mod body;
 mod bounds;
 mod components;
 pub mod crown;

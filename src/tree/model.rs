@@ -1,6 +1,7 @@
 //! The baked model of a tree: everything that the trees of one variant and age share. It never changes.
 
 use super::{
+    body::TreeBody,
     bounds::{PressureStep, SwayBounds, bounds_by_step, limit_bounds, reaches_m},
     individual::grow,
     leaf_mesh::leaves,
@@ -29,6 +30,8 @@ pub struct TreeModel {
     pub wood: Arc<WoodVertices>,
     /// The foliage; empty for a bare tree.
     pub leaves: Arc<LeafVertices>,
+    /// What of it is in the way of rays and bodies.
+    pub body: Arc<TreeBody>,
     /// Box around the tree in every pose that the saturating beams can take, tree-local, m.
     pub bounds: SwayBounds,
     /// The same for weaker winds.
@@ -45,9 +48,10 @@ impl TreeModel {
         let reaches_m = reaches_m(&beams, &wood, &leaves);
         let bounds = limit_bounds(&beams, &reaches_m);
         let bounds_by_step = bounds_by_step(&beams, &reaches_m, bounds);
+        let body = Arc::new(TreeBody::new(species, &skeleton, &beams, &leaves));
         let (skeleton, wood, leaves) = (Arc::new(skeleton), Arc::new(wood), Arc::new(leaves));
         let leaf_season = LeafSeason::of(&species.phenology);
-        Self { skeleton, beams, leaf_season, wood, leaves, bounds, bounds_by_step }
+        Self { skeleton, beams, leaf_season, wood, leaves, body, bounds, bounds_by_step }
     }
 
     /// Box around the tree in every pose that it takes while no beam's static-equivalent wind pressure is above this,

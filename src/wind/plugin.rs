@@ -4,7 +4,7 @@ use super::{
     components::{WindCell, sample_wind_cells},
     ecs::{
         active::{ActiveWind, Wind, fade_fields, finish_field_build, start_field_build},
-        clock::{WindClock, advance_clock},
+        clock::{WindClock, advance_clock, note_jumps},
     },
 };
 use crate::{
@@ -30,7 +30,9 @@ impl Plugin for WindPlugin {
             .init_resource::<WindClock>()
             .init_resource::<ActiveWind>();
         let advance = timed!(app, advance_clock, start_field_build, finish_field_build, fade_fields, sample_wind_cells);
-        app.add_systems(PreUpdate, advance.chain().in_set(WindwoodSystems::AdvanceWind));
+        let jumps = timed!(app, note_jumps);
+        app.add_systems(PreUpdate, advance.chain().in_set(WindwoodSystems::AdvanceWind))
+            .add_systems(PostUpdate, jumps.before(WindwoodSystems::Pose));
     }
 
     fn finish(&self, app: &mut App) {

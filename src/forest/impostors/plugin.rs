@@ -8,12 +8,10 @@ use super::{
 use crate::{
     forest::{
         Forest,
-        cells::plant_cells,
         cull::{ForestCulling, cull_cells, measure_species},
         diagnose::ForestGizmoPlugin,
         falling::draw_stumps,
         layers::copy_forest_layers,
-        stream_trees::stream_trees,
     },
     plugin_checks::{has_renderer, require_renderer_before},
     removal::remove_made,
@@ -40,7 +38,7 @@ impl Plugin for ForestRenderPlugin {
         app.add_plugins(ForestGizmoPlugin)
             .register_type::<ForestCulling>()
             .init_resource::<ForestCulling>()
-            .add_systems(Update, copy_forest_layers.after(stream_trees))
+            .add_systems(Update, copy_forest_layers.after(WindwoodSystems::Stream).before(WindwoodSystems::Bake))
             .add_systems(PostUpdate, cull.chain().in_set(WindwoodSystems::Cull));
         if !has_renderer(app) {
             return;
@@ -53,10 +51,11 @@ impl Plugin for ForestRenderPlugin {
             .init_resource::<ImpostorSpeciesLibrary>();
         let stream = timed!(app, bake_impostor_species, stream_impostor_tiles);
         let mask = timed!(app, update_near_masks);
-        app.add_systems(Update, stream.chain().after(plant_cells).run_if(can_draw))
+        let stream = stream.chain().after(copy_forest_layers).before(WindwoodSystems::Bake);
+        app.add_systems(Update, stream.run_if(can_draw))
             .add_systems(Update, draw_stumps.after(WindwoodSystems::Stream))
             .add_systems(Update, update_material_lights::<ImpostorExtension>.run_if(resource_changed::<TreeLights>))
-            .add_systems(PostUpdate, mask.before(WindwoodSystems::Upload));
+            .add_systems(PostUpdate, mask.after(WindwoodSystems::Cull).before(WindwoodSystems::Upload));
     }
 
     fn finish(&self, app: &mut App) {

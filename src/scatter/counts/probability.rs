@@ -62,13 +62,13 @@ impl Probabilities {
             CountModel::Poisson => poisson(mean, entries),
             CountModel::Binomial { n } => binomial(n, mean / f64::from(n), entries),
             CountModel::NegativeBinomial { k } => negative_binomial(k, mean / k, entries),
-            CountModel::PoissonPoisson { clump } => compound(mean, clump, (-clump).exp(), &poisson(clump, entries)),
+            CountModel::PoissonPoisson { clump } => compound(mean, clump, libm::exp(-clump), &poisson(clump, entries)),
             CountModel::PoissonBinomial { n, p } => {
-                let empty = (1.0 - p).powi(n.cast_signed());
+                let empty = libm::pow(1.0 - p, f64::from(n));
                 compound(mean, f64::from(n) * p, empty, &binomial(n - 1, p, entries))
             }
             CountModel::PoissonNegativeBinomial { k, p } => {
-                let empty = (-k * p.ln_1p()).exp();
+                let empty = libm::exp(-k * libm::log1p(p));
                 compound(mean, k * p, empty, &negative_binomial(k + 1.0, p, entries))
             }
         }
@@ -104,14 +104,14 @@ fn recursion(first: f64, entries: usize, factor: impl Fn(f64) -> f64) -> Vec<f64
 }
 
 fn poisson(mean: f64, entries: usize) -> Vec<f64> {
-    recursion((-mean).exp(), entries, |count| mean / count)
+    recursion(libm::exp(-mean), entries, |count| mean / count)
 }
 
 fn binomial(n: u32, p: f64, entries: usize) -> Vec<f64> {
     let places = f64::from(n);
     let upward = |p: f64, entries| {
         let odds = p / (1.0 - p);
-        recursion((1.0 - p).powi(n.cast_signed()), entries, |count| (places - count + 1.0).max(0.0) / count * odds)
+        recursion(libm::pow(1.0 - p, f64::from(n)), entries, |count| (places - count + 1.0).max(0.0) / count * odds)
     };
     if p <= 0.5 {
         return upward(p, entries);
@@ -124,14 +124,14 @@ fn binomial(n: u32, p: f64, entries: usize) -> Vec<f64> {
 
 fn negative_binomial(k: f64, p: f64, entries: usize) -> Vec<f64> {
     let share = p / (1.0 + p);
-    recursion((-k * p.ln_1p()).exp(), entries, |count| (k + count - 1.0) / count * share)
+    recursion(libm::exp(-k * libm::log1p(p)), entries, |count| (k + count - 1.0) / count * share)
 }
 
 /// The law of a Poisson number of clumps; `one_more` is h over the mean of a clump, and as long as the result.
 fn compound(mean: f64, clump: f64, empty_clump: f64, one_more: &[f64]) -> Vec<f64> {
     let clumps = mean / clump;
     let mut of = Vec::with_capacity(one_more.len());
-    of.push((clumps * (empty_clump - 1.0)).exp());
+    of.push(libm::exp(clumps * (empty_clump - 1.0)));
     while of.len() < one_more.len() {
         let sum: f64 = one_more.iter().zip(of.iter().rev()).map(|(weight, probability)| weight * probability).sum();
         of.push(mean / of.len() as f64 * sum);

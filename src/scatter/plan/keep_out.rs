@@ -77,7 +77,7 @@ impl KeepOut {
             Self::House { centre_m, size_m, turn_deg } => vec![Blocker::House {
                 centre: in_f64(*centre_m),
                 half_size: 0.5 * in_f64(*size_m),
-                along: DVec2::from_angle(f64::from(*turn_deg).to_radians()),
+                along: direction(f64::from(*turn_deg).to_radians()),
             }],
             Self::Disc { centre_m, radius_m } => {
                 let centre = in_f64(*centre_m);
@@ -86,6 +86,11 @@ impl KeepOut {
             Self::Water { shore_m } => vec![Blocker::Water(Polygon::new(shore_m))],
         }
     }
+}
+
+fn direction(angle_rad: f64) -> DVec2 {
+    let (sine, cosine) = libm::sincos(angle_rad);
+    DVec2::new(cosine, sine)
 }
 
 /// A piece of a shape that is kept free, prepared for queries.

@@ -107,7 +107,7 @@ impl GroundLimits {
         let shift_m = (chance - 0.5) * self.fade_m;
         let upright = self.steepest_deg >= 90.0;
         (self.lowest_m + shift_m..=self.highest_m - shift_m).contains(&height_m)
-            && (upright || slope <= self.steepest_deg.to_radians().tan())
+            && (upright || slope <= libm::tanf(self.steepest_deg.to_radians()))
     }
 
     /// The share of chances with which [`admit`](Self::admit) admits ground of this height and slope, 0 to 1.

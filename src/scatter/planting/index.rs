@@ -26,7 +26,8 @@ impl BoxIndex {
     pub(super) fn new(boxes: impl IntoIterator<Item = [DVec2; 2]>) -> Self {
         let mut index = Self::default();
         for (number, [min, max]) in boxes.into_iter().enumerate() {
-            let size = ((max - min).max_element() / LEAST_TILE_M).max(1.0).log2().ceil() as u32;
+            let size = ((max - min).max_element() / LEAST_TILE_M).max(1.0);
+            let size = libm::log2(size).ceil() as u32;
             index.entries.extend(tiles(size, min, max).map(|tile| (tile, number as u32)));
             index.sizes.push(size);
         }
@@ -52,7 +53,7 @@ impl BoxIndex {
 }
 
 fn tiles(size: u32, min: DVec2, max: DVec2) -> impl Iterator<Item = Tile> {
-    let side = LEAST_TILE_M * f64::from(size).exp2();
+    let side = LEAST_TILE_M * libm::exp2(f64::from(size));
     let tile = |place: DVec2| -> IVec2 { (place / side).floor().as_ivec2() };
     let (first, last) = (tile(min), tile(max));
     (first.y..=last.y).flat_map(move |row| (first.x..=last.x).map(move |column| (size, column, row)))

@@ -144,7 +144,7 @@ impl Stem {
 
 /// [`Planted::plan_size`]. A species of age a has 1 - 0.05^(a/full-grown) of its size (Mitscherlich's law of growth).
 fn plan_size(age_years: f32, full_grown_years: f32, vigour: f32) -> f32 {
-    let grown = 1.0 - LEFT_TO_GROW.powf(age_years / full_grown_years);
+    let grown = 1.0 - libm::powf(LEFT_TO_GROW, age_years / full_grown_years);
     (grown * vigour).clamp(1e-3, GREATEST_SIZE)
 }
 
@@ -156,8 +156,8 @@ fn normal(random: &mut impl Rng) -> f32 {
 /// A log-normal variable of given mean and standard deviation: with c = deviation / mean, σ² = ln(1 + c²) and
 /// mean e^(σ z - σ²/2).
 fn log_normal(mean: f32, deviation: f32, random: &mut impl Rng) -> f32 {
-    let variance = (deviation / mean).powi(2).ln_1p();
-    mean * (variance.sqrt() * normal(random) - 0.5 * variance).exp()
+    let variance = libm::log1pf((deviation / mean) * (deviation / mean));
+    mean * libm::expf(variance.sqrt() * normal(random) - 0.5 * variance)
 }
 
 #[cfg(test)]
