@@ -39,6 +39,7 @@
 //! | [`lod`] | lower levels of detail of a baked tree: decimated meshes, impostors, envelopes | tree, texture, dynamics |
 //! | [`sway`] | how trees answer the wind: response tables, fades, articulated trees; no rendering | tree, wind, dynamics |
 //! | `render` | how trees are drawn: prepared species, instances, LOD selection, shaders, impostors | sway, lod, tree, wind, dynamics, texture |
+//! | `export` | trees and stands as files: glTF, OBJ, impostors; no ECS | sway, lod, tree, texture, dynamics |
 //! | [`grass`] | meadows that bend in the wind, [`GrassPatch`](grass::GrassPatch) | sway, render |
 //! | [`fire`] | fires that lean with it and give light, [`Fire`](fire::Fire) | sway, wind, render |
 //! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Terrain`](terrain::Terrain) | texture, render |
@@ -51,7 +52,7 @@
 //!
 //! # Features
 //! `render` (on by default) holds all drawing. Without it, [`WindwoodMinimalPlugins`] moves the same trees on a server or in
-//! a test.
+//! a test. `export` writes trees and stands as files for other programs.
 
 mod background;
 mod constants;
@@ -70,6 +71,8 @@ mod viewpoint;
 
 pub mod cells;
 pub mod dynamics;
+#[cfg(feature = "export")]
+pub mod export;
 pub mod fire;
 pub mod forest;
 pub mod grass;
@@ -170,4 +173,7 @@ mod guide {
     struct Servers;
     #[doc = include_str!("../docs/guide/shaders.md")]
     struct Shaders;
+    #[cfg(feature = "export")]
+    #[doc = include_str!("../docs/guide/export.md")]
+    struct Export;
 }

@@ -26,7 +26,7 @@ use circles::circles;
 use modules::{Crate, File};
 
 /// A room and the rooms it may import. A room that is not here may not exist.
-const MAY_KNOW: [(&str, &[&str]); 13] = [
+const MAY_KNOW: [(&str, &[&str]); 14] = [
     ("wind", &[]),
     ("dynamics", &["wind"]),
     ("texture", &[]),
@@ -37,6 +37,7 @@ const MAY_KNOW: [(&str, &[&str]); 13] = [
     ("lod", &["tree", "texture", "dynamics"]),
     ("sway", &["tree", "wind", "dynamics"]),
     ("render", &["sway", "lod", "tree", "texture", "wind", "dynamics"]),
+    ("export", &["sway", "lod", "tree", "texture", "dynamics"]),
     ("grass", &["sway", "render"]),
     ("fire", &["sway", "wind", "render"]),
     ("forest", &["scatter", "cells", "terrain", "tree", "lod", "sway", "wind", "render"]),

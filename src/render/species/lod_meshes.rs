@@ -5,14 +5,10 @@ use super::{
     tree_material::{ATTRIBUTE_LEAF_ANCHOR, ATTRIBUTE_LEAF_AXIS, ATTRIBUTE_SWAY},
 };
 use crate::{
-    lod::{
-        CrossedPolygons, Decimation, EnvelopeLevel, EnvelopeVertices, Lens, LodBakeSettings, LodScreenSizes, Scene,
-        crossed_polygons, decimate, prunable_radius_m,
-    },
+    lod::{CrossedPolygons, EnvelopeLevel, EnvelopeVertices, LodBakeSettings, Scene, crossed_polygons, thinned_meshes},
     render::settings::LevelStyle,
     tree::{
-        Growth, Species, TreeModel,
-        crown::impressionist::leaves_at,
+        Species, TreeModel,
         textures::{SpeciesTextures, species_textures},
         vertices::{LeafVertices, WoodVertices},
     },
@@ -23,13 +19,6 @@ use bevy::{
     prelude::*,
 };
 use std::sync::Arc;
-
-/// Share of the wood that each level of a tree that sheds its leaves keeps at least. Branches of birches are thin: with all that may be
-/// left out under the leaves of an oak, a birch would be a bare pole in winter.
-const LEAST_WOOD_SHARE: f32 = 0.45;
-
-/// A plant with no more vertices of leaves than so many is never thinned: its few leaves, enlarged, would look like another plant.
-const SMALL_VERTICES: usize = 2000;
 
 /// The meshes of a species at one age.
 pub(crate) struct SpeciesMeshes {
@@ -87,29 +76,9 @@ pub(crate) fn species_meshes(
     settings: &LodBakeSettings,
 ) -> SpeciesMeshes {
     let textures = (has_images || style == LevelStyle::Paper).then(|| species_textures(species));
-    // Ellipsoids are few, and each is seen: none may be left out. Impressionist crowns know which of their polygons may.
-    let is_indivisible = matches!(species.growth, Growth::Gardner(_) | Growth::Impressionist(_));
-    let leaf_share = |share| if is_indivisible { 1.0 } else { share };
-    let least_radius_m = |model: &TreeModel, most_m| match species.phenology.evergreen {
-        true => most_m,
-        false => prunable_radius_m(&model.skeleton, most_m, LEAST_WOOD_SHARE),
-    };
-    let decimations = |model: &TreeModel| -> Vec<Decimation> {
-        if !is_indivisible && model.leaves.positions.len() <= SMALL_VERTICES {
-            return vec![Decimation::default(); settings.decimations.len()];
-        }
-        let bearable = |part: &Decimation| Decimation {
-            least_radius_m: least_radius_m(model, part.least_radius_m),
-            leaf_share: leaf_share(part.leaf_share),
-        };
-        settings.decimations.iter().map(bearable).collect()
-    };
     let levels = |model: TreeModel| match (style, &textures) {
         (LevelStyle::Paper, Some(textures)) => paper_levels(species, model, textures, settings),
-        (LevelStyle::Thinned, _) => {
-            let decimations = decimations(&model);
-            thinned_levels(species, model, &decimations)
-        }
+        (LevelStyle::Thinned, _) => thinned_levels(species, model, settings),
         (LevelStyle::Full | LevelStyle::Paper, _) => vec![full_level(model, MaterialKind::Bark)],
     };
     let variant = |model: TreeModel| VariantMeshes { height_m: model.height_m(), lods: levels(model) };
@@ -130,15 +99,10 @@ fn foliage(leaves: LeafVertices) -> Option<MeshPart> {
 }
 
 /// The tree itself, and thinned ones. Only the last bark fades, into the impostor. Between the others no more than twigs thinner than a
-/// pixel is left out. Impressionist crowns have the polygons of the distance at which the level begins, on a usual camera's picture.
-fn thinned_levels(species: &Species, model: TreeModel, decimations: &[Decimation]) -> Vec<LodMeshes> {
-    let last = decimations.len();
-    let thinned = decimations.iter().enumerate().map(|(number, decimation)| {
-        let mut meshes = decimate(&model, decimation);
-        if let Growth::Impressionist(crown) = &species.growth {
-            let begin_m = LodScreenSizes::default().distances_of_three_m(crown.height_m, Lens::default())[number];
-            meshes.leaves = leaves_at(crown, &model.skeleton, begin_m);
-        }
+/// pixel is left out.
+fn thinned_levels(species: &Species, model: TreeModel, settings: &LodBakeSettings) -> Vec<LodMeshes> {
+    let last = settings.decimations.len();
+    let thinned = thinned_meshes(species, &model, settings).into_iter().enumerate().map(|(number, meshes)| {
         let material = if number + 1 == last { MaterialKind::FadingBark } else { MaterialKind::Bark };
         let wood = MeshPart { mesh: wood_mesh(meshes.wood), material };
         LodMeshes { wood, leaves: foliage(meshes.leaves), is_wood_nested: true }
@@ -220,7 +184,7 @@ mod tests {
     use super::*;
     use crate::{
         lod::LEAST_LEAF_SHARE,
-        tree::{MOST_ENLARGED, crown::impressionist::ImpressionistCrown},
+        tree::{Growth, MOST_ENLARGED, crown::impressionist::ImpressionistCrown},
     };
 
     #[test]
