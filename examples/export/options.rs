@@ -1,9 +1,9 @@
 //! Command-line options.
 
 use crate::arguments::{in_range, wind_speed, year};
-use bevy_windwood::export::{ExportLevels, ExportSettings, Instancing, MotionSettings};
+use bevy_windwood::export::{ExportLevels, ExportSettings, Instancing, LeafSides, MotionSettings};
 use clap::{Args, Parser, ValueEnum};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Trees and stands as files for other programs.
 #[derive(Parser, Clone, Debug)]
@@ -32,6 +32,9 @@ pub struct Options {
     /// All levels in one GLB.
     #[arg(long, value_enum)]
     pub lods: Option<Lods>,
+    /// How leaves are seen from behind.
+    #[arg(long, value_enum, default_value_t = Sides::Twice)]
+    pub leaf_sides: Sides,
     #[command(flatten)]
     pub sway: SwayOptions,
     /// What to write.
@@ -99,6 +102,15 @@ pub enum Format {
     Impostor,
 }
 
+/// How leaves are seen from behind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Sides {
+    /// As triangles of their own.
+    Twice,
+    /// By a double-sided material.
+    DoubleSided,
+}
+
 /// How the places of a stand are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Places {
@@ -109,6 +121,14 @@ pub enum Places {
 }
 
 impl Options {
+    /// What files are called, without ending.
+    pub fn file_name(&self) -> String {
+        let source = self.plan.as_ref().unwrap_or(&self.species);
+        let file = Path::new(source).file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let own = || file.split('.').next().unwrap_or_default().to_owned();
+        self.name.clone().unwrap_or_else(own)
+    }
+
     pub fn settings(&self) -> ExportSettings {
         let SwayOptions { loop_s, rate, joints, .. } = self.sway;
         let levels = match self.lods {
@@ -118,7 +138,11 @@ impl Options {
         };
         let fade_s = MotionSettings::default().fade_s.min(0.25 * loop_s);
         let motion = MotionSettings { joints, loop_s, fade_s, rate_hz: rate, ..MotionSettings::default() };
-        ExportSettings { year: self.year, levels, motion, ..ExportSettings::default() }
+        let leaf_sides = match self.leaf_sides {
+            Sides::Twice => LeafSides::Twice,
+            Sides::DoubleSided => LeafSides::DoubleSided,
+        };
+        ExportSettings { year: self.year, levels, leaf_sides, motion, ..ExportSettings::default() }
     }
 }
 

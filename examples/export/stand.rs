@@ -40,8 +40,7 @@ pub fn export(options: &Options, plan: &str) -> Result<(), String> {
     let start = Instant::now();
     let glb = stand_glb(&trees, &instances, options.stand.places.into(), &options.settings());
     let glb = glb.map_err(|error| error.to_string())?;
-    let name = options.name.as_deref().unwrap_or("stand");
-    write(&ExportedFiles(vec![(format!("{name}.glb"), glb)]), options, start)
+    write(&ExportedFiles(vec![(format!("{}.glb", options.file_name()), glb)]), options, start)
 }
 
 /// What the plan has in the square about its origin, on level ground.

@@ -22,14 +22,14 @@ pub fn export(options: &Options) -> Result<(), String> {
     let tree = ExportedTree { species: &species, textures: &textures, model: &model, age_years, seed };
     let wind = options.sway.wind.map(|speed| wind(speed, seed)).transpose()?;
     println!("{}: grown after {:.2} s", species.name, start.elapsed().as_secs_f32());
-    let (settings, name) = (options.settings(), options.name.as_ref().unwrap_or(&species.name));
+    let (settings, name) = (options.settings(), options.file_name());
     for format in &options.formats {
         let start = Instant::now();
         let files = match format {
             Format::Glb => {
                 tree_glb(&tree, &settings, wind.as_ref()).map(|glb| ExportedFiles(vec![(format!("{name}.glb"), glb)]))
             }
-            Format::Obj => obj_files(&tree, name, &settings),
+            Format::Obj => obj_files(&tree, &name, &settings),
             Format::Polygons => polygon_files(&tree, &format!("{name}_polygons")),
             Format::Impostor => impostor_files(&tree, &format!("{name}_impostor"), &settings),
         };

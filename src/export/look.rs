@@ -4,7 +4,7 @@ use super::{
     error::ExportError,
     leaf_look::LeafLook,
     picture::{Channels, png},
-    settings::ExportSettings,
+    settings::{ExportSettings, LeafSides},
     surface::{Part, WoodLook},
     tree::ExportedTree,
 };
@@ -19,6 +19,7 @@ pub(super) struct SpeciesLook<'a> {
     pub textures: &'a SpeciesTextures,
     pub wood: WoodLook,
     pub leaves: LeafLook<'a>,
+    pub leaf_sides: LeafSides,
 }
 
 impl<'a> SpeciesLook<'a> {
@@ -31,6 +32,7 @@ impl<'a> SpeciesLook<'a> {
             textures: first.textures,
             wood: WoodLook::new(&first.species.wood, &wood),
             leaves: LeafLook::new(first.species, first.textures, &leaves, (settings.year, settings.tint)),
+            leaf_sides: settings.leaf_sides,
         }
     }
 

@@ -52,6 +52,6 @@ pub use gltf::{Instancing, StandInstance, stand_glb, tree_glb};
 pub use impostors::impostor_files;
 pub use obj::obj_files;
 pub use polygons::polygon_files;
-pub use settings::{ExportLevels, ExportSettings, MOST_JOINTS, MotionSettings};
+pub use settings::{ExportLevels, ExportSettings, LeafSides, MOST_JOINTS, MotionSettings};
 pub use tree::ExportedTree;
 pub use write::{ExportedFiles, write_atomically};

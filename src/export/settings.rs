@@ -20,6 +20,8 @@ pub struct ExportSettings {
     pub tint: f32,
     /// Which levels of detail.
     pub levels: ExportLevels,
+    /// How leaves are seen from behind, in a GLB.
+    pub leaf_sides: LeafSides,
     /// How the lower levels are made.
     pub bake: LodBakeSettings,
     /// How the sway is baked.
@@ -35,6 +37,17 @@ pub enum ExportLevels {
     Lod,
     /// All, as nodes of the scene, which the program that reads them is to choose from: `NAME_LOD0`, `NAME_LOD1` and so on.
     Nodes,
+}
+
+/// How leaves are seen from behind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect, Serialize, Deserialize)]
+pub enum LeafSides {
+    /// Every triangle of a leaf is there twice, once for each side, on the same vertices. Both sides have the normals of the upper one, so
+    /// that light models the crown as it does in this crate's own pictures.
+    #[default]
+    Twice,
+    /// Once, in a material that is double-sided. Programs turn its normals for the side that is seen, so that crowns are darker.
+    DoubleSided,
 }
 
 /// How the sway of a tree becomes a skeleton and an animation.
@@ -60,6 +73,7 @@ impl Default for ExportSettings {
             year: 0.55,
             tint: 0.0,
             levels: ExportLevels::One(0),
+            leaf_sides: LeafSides::default(),
             bake: LodBakeSettings::default(),
             motion: MotionSettings::default(),
         }

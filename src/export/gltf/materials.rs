@@ -2,7 +2,7 @@
 
 use super::builder::GlbBuilder;
 use crate::{
-    export::{error::ExportError, look::SpeciesLook, surface::Part},
+    export::{error::ExportError, look::SpeciesLook, settings::LeafSides, surface::Part},
     texture::MASK_CUT_OFF,
 };
 use gltf_json::{
@@ -18,6 +18,9 @@ use serde_json::{Map, Value, json};
 const BARK_REFLECTANCE: f32 = 0.2;
 const LEAF_REFLECTANCE: f32 = 0.08;
 const LEAF_ROUGHNESS: f32 = 0.8;
+/// The factor of an ellipsoid's mask, 1/(2 - u²) with the cosine u between its surface and the eye, where u² has its mean over the disc
+/// that is seen: 1/2. A file can have no other factor towards the outline.
+const MEAN_SILHOUETTE: f32 = 1.0 / 1.5;
 
 /// The materials of a species, made when they are first asked for.
 pub(super) struct SpeciesMaterials<'a> {
@@ -36,6 +39,11 @@ impl<'a> SpeciesMaterials<'a> {
     /// Whether meshes of a part need tangents.
     pub fn needs_tangents(&self, part: Part) -> bool {
         self.look.has_normal_map(part)
+    }
+
+    /// Whether triangles of a part are there for both sides.
+    pub fn has_both_sides(&self, part: Part) -> bool {
+        part != Part::Wood && self.look.leaf_sides == LeafSides::Twice
     }
 
     /// The material of a part.
@@ -85,12 +93,13 @@ impl<'a> SpeciesMaterials<'a> {
         {
             self.leaf_normal = Some(self.texture(glb, "normals", part, &png?));
         }
+        let cut_off = if self.look.species.has_ellipsoids() { MASK_CUT_OFF / MEAN_SILHOUETTE } else { MASK_CUT_OFF };
         let translucency = if part == Part::Leaves { self.look.species.foliage.translucency } else { 0.0 };
         Ok(Material {
             name: Some(self.name(part)),
-            alpha_cutoff: Some(AlphaCutoff(MASK_CUT_OFF)),
+            alpha_cutoff: Some(AlphaCutoff(cut_off)),
             alpha_mode: Valid(AlphaMode::Mask),
-            double_sided: true,
+            double_sided: self.look.leaf_sides == LeafSides::DoubleSided,
             pbr_metallic_roughness: PbrMetallicRoughness {
                 base_color_texture: Some(info(colour)),
                 metallic_factor: StrengthFactor(0.0),
@@ -108,22 +117,25 @@ impl<'a> SpeciesMaterials<'a> {
     }
 
     fn texture(&self, glb: &mut GlbBuilder, what: &str, part: Part, png: &[u8]) -> Index<Texture> {
-        // Bark repeats around the branch and along it.
-        let wrap = if part == Part::Wood { WrappingMode::Repeat } else { WrappingMode::ClampToEdge };
+        // Bark repeats around the branch and along it. The mask of leaves has no mips: averaged ones would thin the crown with distance.
+        let (wrap, filter) = match part {
+            Part::Wood => (WrappingMode::Repeat, MinFilter::LinearMipmapLinear),
+            Part::Leaves | Part::BareSprays => (WrappingMode::ClampToEdge, MinFilter::Linear),
+        };
         let source = glb.image(format!("{} {what}", self.name(part)), png);
-        let sampler = sampler(glb, wrap);
+        let sampler = sampler(glb, wrap, filter);
         glb.root.push(Texture { name: None, sampler: Some(sampler), source, extensions: None, extras: None })
     }
 }
 
 /// The sampler that repeats, or the one that does not.
-fn sampler(glb: &mut GlbBuilder, wrap: WrappingMode) -> Index<Sampler> {
+fn sampler(glb: &mut GlbBuilder, wrap: WrappingMode, filter: MinFilter) -> Index<Sampler> {
     if let Some(known) = glb.root.samplers.iter().position(|sampler| sampler.wrap_s == Valid(wrap)) {
         return Index::new(known as u32);
     }
     glb.root.push(Sampler {
         mag_filter: Some(Valid(MagFilter::Linear)),
-        min_filter: Some(Valid(MinFilter::LinearMipmapLinear)),
+        min_filter: Some(Valid(filter)),
         wrap_s: Valid(wrap),
         wrap_t: Valid(wrap),
         ..Sampler::default()

@@ -7,7 +7,7 @@ use super::{
 use crate::export::{error::ExportError, level::Level, skin::Skin, surface::Surface};
 use bevy::math::Vec3;
 use gltf_json::{
-    Accessor, Index, Material, Mesh,
+    Accessor, Index, Mesh,
     accessor::{ComponentType, Type},
     buffer::Target,
     mesh::{Mode, Primitive, Semantic},
@@ -31,19 +31,16 @@ pub(super) fn push_level(
 ) -> Result<Index<Mesh>, ExportError> {
     let mut primitives = Vec::with_capacity(level.parts.len());
     for (part, surface) in &level.parts {
-        let material = materials.of(*part, glb)?;
-        primitives.push(primitive(glb, surface, material, materials.needs_tangents(*part), skin));
+        let mut primitive = primitive(glb, surface, materials.needs_tangents(*part), skin);
+        primitive.indices = Some(indices(glb, surface, materials.has_both_sides(*part)));
+        primitive.material = Some(materials.of(*part, glb)?);
+        primitives.push(primitive);
     }
     Ok(glb.root.push(Mesh { extensions: None, extras: None, name: Some(name), primitives, weights: None }))
 }
 
-fn primitive(
-    glb: &mut GlbBuilder,
-    surface: &Surface,
-    material: Index<Material>,
-    has_tangents: bool,
-    skin: Option<&Skin>,
-) -> Primitive {
+/// The vertices of a surface, without triangles and material.
+fn primitive(glb: &mut GlbBuilder, surface: &Surface, has_tangents: bool, skin: Option<&Skin>) -> Primitive {
     let positions = Elements { bounds: Some(bounds(&surface.positions)), ..Elements::floats(Type::Vec3, VERTICES) };
     let bytes = |component, normalized| Elements { component, normalized, ..Elements::floats(Type::Vec4, VERTICES) };
     let mut attributes = BTreeMap::new();
@@ -67,20 +64,24 @@ fn primitive(
         attributes,
         extensions: None,
         extras: None,
-        indices: Some(indices(glb, surface)),
-        material: Some(material),
+        indices: None,
+        material: None,
         mode: Valid(Mode::Triangles),
         targets: None,
     }
 }
 
-fn indices(glb: &mut GlbBuilder, surface: &Surface) -> Index<Accessor> {
+fn indices(glb: &mut GlbBuilder, surface: &Surface, has_both_sides: bool) -> Index<Accessor> {
     let elements =
         |component| Elements { component, ..Elements::floats(Type::Scalar, Some(Target::ElementArrayBuffer)) };
-    if surface.positions.len() > SHORT_INDICES {
-        return glb.accessor(&surface.indices, elements(ComponentType::U32));
+    let mut indices = surface.indices.clone();
+    if has_both_sides {
+        indices.extend(surface.indices.chunks_exact(3).flat_map(|corners| [corners[0], corners[2], corners[1]]));
     }
-    let short: Vec<u16> = surface.indices.iter().map(|index| *index as u16).collect();
+    if surface.positions.len() > SHORT_INDICES {
+        return glb.accessor(&indices, elements(ComponentType::U32));
+    }
+    let short: Vec<u16> = indices.iter().map(|index| *index as u16).collect();
     glb.accessor(&short, elements(ComponentType::U16))
 }
 

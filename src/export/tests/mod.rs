@@ -48,8 +48,8 @@ impl Grown {
     }
 }
 
-/// An oak of forty years.
-static OAK: LazyLock<Grown> = LazyLock::new(|| Grown::new(Species::default(), 40.0, u64::MAX - 2));
+/// A grown oak.
+static OAK: LazyLock<Grown> = LazyLock::new(|| Grown { seed: u64::MAX - 2, ..Grown::shipped("oak", 120.0) });
 
 /// A strong breeze.
 static WIND: LazyLock<WindResponse> = LazyLock::new(|| {

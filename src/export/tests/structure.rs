@@ -1,7 +1,7 @@
 //! The structure of a GLB against the specification of glTF 2.0, and what is in it against the tree.
 
 use super::{OAK, WIND, glb_reader::Reader};
-use crate::export::{ExportLevels, ExportSettings, MotionSettings, tree_glb};
+use crate::export::{ExportLevels, ExportSettings, LeafSides, MotionSettings, tree_glb};
 use bevy::math::Vec3;
 use gltf::{
     Semantic,
@@ -52,9 +52,9 @@ fn accessors_are_aligned_lie_in_the_buffer_and_hold_finite_numbers_within_their_
         let width = accessor.dimensions().multiplicity();
         for component in 0..width {
             let own = || values.iter().skip(component).step_by(width).copied();
-            let [told_min, told_max] = [&min, &max].map(|told| told[component].as_f64().unwrap());
-            assert_eq!(f64::from(own().fold(f32::INFINITY, f32::min)), told_min);
-            assert_eq!(f64::from(own().fold(f32::NEG_INFINITY, f32::max)), told_max);
+            let [told_min, told_max] = [&min, &max].map(|told| told[component].as_f64().unwrap() as f32);
+            assert_eq!(own().fold(f32::INFINITY, f32::min), told_min);
+            assert_eq!(own().fold(f32::NEG_INFINITY, f32::max), told_max);
         }
     }
     // The positions of six primitives, and the times of the keys.
@@ -135,7 +135,11 @@ fn the_full_tree_has_the_positions_and_triangles_of_its_model() {
         indices.iter().map(|index| positions[*index as usize]).collect()
     };
     let own = corners(&OAK.model.leaves.positions, &OAK.model.leaves.indices);
-    assert!(corners(&reader.positions(&leaves), &reader.indices(&leaves)) == own);
+    let indices = reader.indices(&leaves);
+    let (upper, lower) = indices.split_at(indices.len() / 2);
+    assert!(corners(&reader.positions(&leaves), upper) == own);
+    let turned = upper.chunks_exact(3).flat_map(|corners| [corners[0], corners[2], corners[1]]);
+    assert!(turned.eq(lower.iter().copied()), "the other side has the same corners the other way round");
     assert!(reader.gltf.skins().next().is_none(), "without a wind it has no skeleton");
 }
 
@@ -175,8 +179,13 @@ fn materials_and_extras_say_what_the_tree_is() {
     let [bark, leaves] =
         ["oak bark", "oak leaves"].map(|name| reader.gltf.materials().find(|it| it.name() == Some(name)).unwrap());
     assert!(!bark.double_sided() && bark.alpha_mode() == AlphaMode::Opaque && bark.occlusion_texture().is_some());
-    assert!(leaves.double_sided() && leaves.alpha_mode() == AlphaMode::Mask && leaves.alpha_cutoff() == Some(0.5));
+    assert!(!leaves.double_sided() && leaves.alpha_mode() == AlphaMode::Mask && leaves.alpha_cutoff() == Some(0.5));
     assert!(bark.normal_texture().is_some() && leaves.normal_texture().is_some());
+    let settings = ExportSettings { leaf_sides: LeafSides::DoubleSided, ..ExportSettings::default() };
+    let double_sided = Reader::new(&OAK.glb(&settings));
+    let leaves = double_sided.primitive("oak", "leaves").unwrap();
+    assert!(leaves.material().double_sided());
+    assert_eq!(double_sided.indices(&leaves).len(), OAK.model.leaves.indices.len());
     let extras: Value = serde_json::from_str(reader.node("oak_LOD0").extras().as_ref().unwrap().get()).unwrap();
     assert_eq!((&extras["species"], &extras["seed"]), (&"oak".into(), &u64::MAX.wrapping_sub(2).to_string().into()));
     assert_eq!(extras["height_m"].as_f64().unwrap() as f32, OAK.model.height_m());
