@@ -13,6 +13,7 @@ use crate::{
     texture::MASK_CUT_OFF,
     tree::textures::SpeciesTextures,
 };
+use bevy::math::Vec3;
 use serde_json::{Value, json};
 
 /// The atlas of a tree: `NAME_colour.png` (sRGB, spread beyond the tree; alpha the share of each texel that it covers), `NAME_surface.png`
@@ -30,7 +31,7 @@ pub fn impostor_files(
     settings.validate()?;
     require_file_name(name)?;
     let look = SpeciesLook::new(tree, std::slice::from_ref(tree), settings);
-    let foliage = look.leaves.mean_texture(&tree.textures.foliage);
+    let foliage = look.leaves.texture(&tree.textures.foliage, Vec3::ONE);
     let textures = SpeciesTextures { foliage, ..tree.textures.clone() };
     let atlas = ImpostorAtlas::bake(&[Scene::new(tree.species, tree.model, &textures)], &settings.bake.impostor);
     let file = |what: &str| format!("{name}_{what}.png");

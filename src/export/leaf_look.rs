@@ -9,11 +9,12 @@
 //! ```
 //!
 //! with `S` the mean colour of the foliage in summer and `R` the recolouring. The product is exact for a texel of that colour; in summer,
-//! where `R` changes nothing, for all. Colours of vertices are at most 1 in a file, so the texture is lightened by `gain`.
+//! where `R` changes nothing, for all. Colours of vertices are at most 1 in a file, so the texture is lightened by `gain`, channel by
+//! channel: as far as the lightest vertex asks for, and the texture has room.
 
 use super::recolour::{Recolouring, SeasonColour, leafness};
 use crate::{
-    texture::{TextureData, colour_bytes, linear},
+    texture::{MASK_CUT_OFF, TextureData, colour_bytes, linear},
     tree::{Species, phenology::Phenology, textures::SpeciesTextures, vertices::LeafVertices},
 };
 use bevy::math::Vec3;
@@ -24,6 +25,9 @@ const TWIG_LEAFNESS: f32 = 0.35;
 const LEAST_SIZE: f32 = 0.02;
 /// Vertices are at most so many times as light as the mean.
 const GREATEST_FACTOR: f32 = 4.0;
+/// The mip whose texels tell how light the texture is, and the share of them that must stay below white.
+const ROOM_MIP: usize = 2;
+const ROOM_SHARE: f32 = 0.95;
 
 /// How the leaves of a species look at a time of the year.
 pub(super) struct LeafLook<'a> {
@@ -36,7 +40,7 @@ pub(super) struct LeafLook<'a> {
     /// Mean colour in summer, light.
     summer: Vec3,
     mean: SeasonColour,
-    gain: f32,
+    gain: Vec3,
 }
 
 /// What is seen of a leaf or a spray.
@@ -69,12 +73,12 @@ impl<'a> LeafLook<'a> {
             are_ellipsoids: species.has_ellipsoids(),
             summer: Vec3::from_array(linear(summer)),
             mean: SeasonColour::default(),
-            gain: 1.0,
+            gain: Vec3::ONE,
         };
         let leaves = || meshes.iter().flat_map(|mesh| mesh.sway.iter().zip(&mesh.axis));
         look.mean = mean(leaves().map(|(sway, axis)| look.season(sway[2], axis[3]).0));
-        let factors = leaves().map(|(sway, axis)| look.factor(sway, axis).max_element());
-        look.gain = factors.fold(1.0, f32::max);
+        let factors = leaves().map(|(sway, axis)| look.factor(sway, axis));
+        look.gain = factors.fold(Vec3::ONE, Vec3::max).min(look.room(&textures.foliage)).max(Vec3::ONE);
         look
     }
 
@@ -83,8 +87,8 @@ impl<'a> LeafLook<'a> {
         (self.factor(sway, axis) / self.gain).clamp(Vec3::ZERO, Vec3::ONE)
     }
 
-    /// How much lighter the texture is than the mean leaf, 1 or more.
-    pub fn gain(&self) -> f32 {
+    /// How much lighter the texture is than the mean leaf, 1 or more, by channel.
+    pub fn gain(&self) -> Vec3 {
         self.gain
     }
 
@@ -100,23 +104,18 @@ impl<'a> LeafLook<'a> {
         if size > 0.02 + 0.96 * rank { LeafState::InLeaf } else { LeafState::Bare }
     }
 
-    /// The texture of leaves.
-    pub fn texture(&self, summer: &TextureData) -> TextureData {
-        self.recoloured(summer, self.gain, |_, alpha| alpha)
+    /// The texture of leaves in the mean colour of the season, so many times as light.
+    pub fn texture(&self, summer: &TextureData, gain: Vec3) -> TextureData {
+        self.recoloured(summer, gain, |_, alpha| alpha)
     }
 
     /// The same with the twigs alone.
-    pub fn bare_texture(&self, summer: &TextureData) -> TextureData {
-        self.recoloured(summer, self.gain, |light, alpha| if leafness(light) < TWIG_LEAFNESS { alpha } else { 0 })
+    pub fn bare_texture(&self, summer: &TextureData, gain: Vec3) -> TextureData {
+        self.recoloured(summer, gain, |light, alpha| if leafness(light) < TWIG_LEAFNESS { alpha } else { 0 })
     }
 
-    /// The texture of leaves with all its mips, and without the room for the colours of vertices.
-    pub fn mean_texture(&self, summer: &TextureData) -> TextureData {
-        self.recoloured(summer, 1.0, |_, alpha| alpha)
-    }
-
-    fn recoloured(&self, summer: &TextureData, gain: f32, alpha: impl Fn(Vec3, u8) -> u8) -> TextureData {
-        let light: [f32; 256] = std::array::from_fn(|byte| linear([byte as f32 / 255.0; 3])[0]);
+    fn recoloured(&self, summer: &TextureData, gain: Vec3, alpha: impl Fn(Vec3, u8) -> u8) -> TextureData {
+        let light = light_of_bytes();
         let texel = |texel: &[u8]| {
             let own = Vec3::from_array(std::array::from_fn(|channel| light[usize::from(texel[channel])]));
             let [red, green, blue] = (gain * self.colours.of(own, self.mean)).to_array();
@@ -125,6 +124,24 @@ impl<'a> LeafLook<'a> {
         };
         let mips = summer.mips.iter().map(|mip| mip.chunks_exact(4).flat_map(texel).collect());
         TextureData { mips: mips.collect(), ..*summer }
+    }
+
+    /// By how much nearly all texels that are drawn can be lightened before they are white, by channel.
+    fn room(&self, summer: &TextureData) -> Vec3 {
+        let light = light_of_bytes();
+        let mip = summer.mips.get(ROOM_MIP).or(summer.mips.last()).map_or(&[][..], Vec::as_slice);
+        let drawn = mip.chunks_exact(4).filter(|texel| f32::from(texel[3]) > 255.0 * MASK_CUT_OFF);
+        let colour = |texel: &[u8]| {
+            let own = std::array::from_fn(|channel| light[usize::from(texel[channel])]);
+            self.colours.of(Vec3::from_array(own), self.mean)
+        };
+        let colours: Vec<Vec3> = drawn.map(colour).collect();
+        let light_one = |channel: usize| {
+            let mut values: Vec<f32> = colours.iter().map(|colour| colour[channel]).collect();
+            let place = (ROOM_SHARE * values.len() as f32) as usize;
+            if place < values.len() { *values.select_nth_unstable_by(place, f32::total_cmp).1 } else { 1.0 }
+        };
+        Vec3::from_array(std::array::from_fn(light_one)).max(Vec3::splat(1e-3)).recip()
     }
 
     /// Colour of the season and share of the leaves of a spray, by its phase and its tint.
@@ -148,6 +165,11 @@ impl<'a> LeafLook<'a> {
         let warmth = tint + self.own;
         light * Vec3::new(0.92 + 0.2 * warmth, 1.0 + 0.06 * self.own, 1.05 - 0.25 * warmth)
     }
+}
+
+/// The light of each byte of a colour.
+fn light_of_bytes() -> [f32; 256] {
+    std::array::from_fn(|byte| linear([byte as f32 / 255.0; 3])[0])
 }
 
 fn mean(colours: impl Iterator<Item = SeasonColour>) -> SeasonColour {

@@ -46,8 +46,8 @@ impl<'a> SpeciesLook<'a> {
         let foliage = &self.textures.foliage;
         let (colour, channels) = match part {
             Part::Wood => (lightened(&self.textures.bark.base_colour, self.wood.gain), Channels::Rgb),
-            Part::Leaves => (self.leaves.texture(foliage), Channels::Rgba),
-            Part::BareSprays => (self.leaves.bare_texture(foliage), Channels::Rgba),
+            Part::Leaves => (self.leaves.texture(foliage, self.leaves.gain()), Channels::Rgba),
+            Part::BareSprays => (self.leaves.bare_texture(foliage, self.leaves.gain()), Channels::Rgba),
         };
         png(&format!("{} {}", self.species.name, part.name()), &colour, channels)
     }

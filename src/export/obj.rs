@@ -53,8 +53,8 @@ fn part_pictures(look: &SpeciesLook, part: Part, name: &str) -> Result<Vec<(Stri
                 (file("normals"), png("bark normals", &look.textures.bark.normal, Channels::Rgb)?),
             ]);
         }
-        Part::Leaves => look.leaves.mean_texture(&look.textures.foliage),
-        Part::BareSprays => look.leaves.bare_texture(&look.textures.foliage),
+        Part::Leaves => look.leaves.texture(&look.textures.foliage, Vec3::ONE),
+        Part::BareSprays => look.leaves.bare_texture(&look.textures.foliage, Vec3::ONE),
     };
     let mut pictures = vec![(file("colour"), png(part.name(), &colour, Channels::Rgb)?)];
     if let Some(normal) = look.normal_png(part) {
@@ -71,7 +71,7 @@ fn mask(texture: &TextureData) -> TextureData {
 }
 
 fn mean_colour(surface: &Surface, look: &SpeciesLook, part: Part) -> Vec3 {
-    let gain = if part == Part::Wood { look.wood.gain } else { look.leaves.gain() };
+    let gain = if part == Part::Wood { Vec3::splat(look.wood.gain) } else { look.leaves.gain() };
     let sum: Vec3 = surface
         .colours
         .iter()

@@ -18,9 +18,7 @@ use crate::{
     setting::{SettingError, require},
 };
 use bevy::math::{Quat, Vec3};
-use gltf_json::{
-    Index, Mesh, Node, Scene, accessor::Type, extensions::scene::Node as NodeExtensions, scene::UnitQuaternion,
-};
+use gltf_json::{Index, Node, Scene, accessor::Type, extensions::scene::Node as NodeExtensions, scene::UnitQuaternion};
 use serde_json::{Map, Value, json, value::to_raw_value};
 
 /// The extension that draws a mesh at many places.
@@ -49,7 +47,8 @@ pub enum Instancing {
     Nodes,
 }
 
-/// A stand as a GLB: trees, one mesh each, and the places at which they stand. Trees of one species share their pictures.
+/// A stand as a GLB: trees, one mesh each, and the places at which they stand. Trees that refer to one
+/// [`Species`](crate::tree::Species) share their pictures.
 ///
 /// # Errors
 /// [`ExportError::Setting`] for the first setting or instance outside its domain; levels must be [`ExportLevels::One`].
@@ -63,32 +62,32 @@ pub fn stand_glb(
     if !matches!(settings.levels, ExportLevels::One(_)) {
         return Err(SettingError::new("levels", format!("{:?}", settings.levels), "One(..) for a stand").into());
     }
+    if instances.is_empty() {
+        return Err(SettingError::new("instances", "0 long", "at least 1 long").into());
+    }
     instances.iter().enumerate().try_for_each(|(number, instance)| {
         instance.validate(trees.len()).map_err(|error| error.inside(&format!("instances[{number}]")))
     })?;
     let mut glb = GlbBuilder::new();
     let mut nodes = Vec::new();
-    for (species, members) in by_species(trees) {
-        let look = SpeciesLook::new(&species, &members.iter().map(|&tree| trees[tree]).collect::<Vec<_>>(), settings);
+    for (first, members) in by_species(trees) {
+        let look = SpeciesLook::new(&first, &members.iter().map(|&tree| trees[tree]).collect::<Vec<_>>(), settings);
         let mut materials = SpeciesMaterials::new(&look);
         for tree in members {
             let of_tree: Vec<&StandInstance> = instances.iter().filter(|instance| instance.tree == tree).collect();
             if of_tree.is_empty() {
                 continue;
             }
-            let name = format!("{} {}", species.species.name, tree);
+            let name = format!("{} {tree}", first.species.name);
             for level in levels(&trees[tree], &look, settings) {
                 let mesh = push_level(&mut glb, name.clone(), &level, &mut materials, None)?;
-                let extras = to_raw_value(&trees[tree].extras(settings.year))?;
-                let place = |node: Node| Node { extras: Some(extras.clone()), ..node };
+                let extras = Some(to_raw_value(&trees[tree].extras(settings.year))?);
+                let node = Node { mesh: Some(mesh), name: Some(name.clone()), extras, ..Node::default() };
                 match instancing {
-                    Instancing::Gpu => {
-                        nodes.push(push_instanced(&mut glb, place(mesh_node(mesh, name.clone())), &of_tree))
+                    Instancing::Gpu => nodes.push(push_instanced(&mut glb, node, &of_tree)),
+                    Instancing::Nodes => {
+                        nodes.extend(of_tree.iter().map(|instance| glb.root.push(instance.place(node.clone()))));
                     }
-                    Instancing::Nodes => nodes.extend(of_tree.iter().map(|instance| {
-                        let node = mesh_node(mesh, name.clone());
-                        glb.root.push(place(instance.place(node)))
-                    })),
                 }
             }
         }
@@ -108,10 +107,6 @@ fn by_species<'a>(trees: &[ExportedTree<'a>]) -> Vec<(ExportedTree<'a>, Vec<usiz
         }
     }
     groups
-}
-
-fn mesh_node(mesh: Index<Mesh>, name: String) -> Node {
-    Node { mesh: Some(mesh), name: Some(name), ..Node::default() }
 }
 
 /// A node whose mesh is drawn at all these places.

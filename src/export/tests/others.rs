@@ -160,6 +160,8 @@ fn a_stand_has_each_tree_once_and_its_places() {
 #[test]
 fn instances_that_stand_nowhere_are_refused_by_number() {
     let instance = StandInstance { tree: 0, position: Vec3::ZERO, turn_rad: 0.0, scale: 1.0 };
+    let none = stand_glb(&[OAK.tree()], &[], Instancing::Gpu, &ExportSettings::default()).unwrap_err();
+    assert_eq!(none.to_string(), "`instances` is 0 long, but must be at least 1 long");
     let refused = |instance: StandInstance| {
         let trees = [OAK.tree()];
         stand_glb(&trees, &[instance], Instancing::Gpu, &ExportSettings::default()).unwrap_err().to_string()
