@@ -76,7 +76,7 @@ fn level_name(tree: &ExportedTree, level: &Level, levels: ExportLevels) -> Strin
 
 /// Has the first node know the others as its lower levels.
 fn add_lower_levels(glb: &mut GlbBuilder, nodes: &[Index<Node>]) {
-    let ids: Vec<usize> = nodes[1..].iter().map(|node| node.value()).collect();
+    let ids: Vec<usize> = nodes[1..].iter().map(Index::value).collect();
     let others: Map<String, Value> = [("MSFT_lod".to_owned(), json!({ "ids": ids }))].into_iter().collect();
     glb.use_extension("MSFT_lod");
     glb.root.nodes[nodes[0].value()].extensions = Some(NodeExtensions { others });
