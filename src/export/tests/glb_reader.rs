@@ -84,7 +84,7 @@ impl Reader {
             keys[joint].times_s = reader.read_inputs().unwrap().collect();
             match reader.read_outputs().unwrap() {
                 ReadOutputs::Rotations(turns) => {
-                    keys[joint].rotations = turns.into_f32().map(Quat::from_array).collect()
+                    keys[joint].rotations = turns.into_f32().map(Quat::from_array).collect();
                 }
                 ReadOutputs::Translations(ways) => keys[joint].translations = ways.map(Vec3::from_array).collect(),
                 _ => panic!("joints turn and move, and nothing else"),

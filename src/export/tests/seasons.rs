@@ -65,9 +65,9 @@ fn colours_multiply_to_those_of_the_renderer() {
         (0.25 + 0.75 * light) * (0.85 + 0.35 * tint) * Vec3::new(0.92 + 0.2 * tint, 1.0, 1.05 - 0.25 * tint)
     };
     let gain = (0..colours.len()).map(shade).fold(Vec3::ONE, Vec3::max);
-    for vertex in 0..colours.len() {
+    for (vertex, colour) in colours.iter().enumerate() {
         let expected = shade(vertex) / gain;
-        assert!(colours[vertex].distance(expected) < 0.006, "{} {expected}", colours[vertex]);
+        assert!(colour.distance(expected) < 0.006, "{colour} {expected}");
     }
     let [_, own, _] = linear(mean_colour(&summer, "oak leaves").map(|channel| channel / 255.0));
     let [_, mean, _] = linear(OAK.textures.foliage_colour());
