@@ -32,9 +32,12 @@ pub(super) fn levels(tree: &ExportedTree, look: &SpeciesLook, settings: &ExportS
     if settings.levels == ExportLevels::One(0) {
         return levels;
     }
-    for (number, meshes) in (1..).zip(thinned_meshes(tree.species, tree.model, &settings.bake)) {
+    let is_bare = tree.model.leaf_season.share(settings.year) == 0.0;
+    for (number, thinned) in (1..).zip(thinned_meshes(tree.species, tree.model, &settings.bake)) {
         if is_wanted(number) {
-            levels.push(level(number, &meshes.wood, &meshes.leaves, tree, look));
+            let bare_wood = thinned.bare_wood.as_ref().filter(|_| is_bare);
+            let wood = bare_wood.unwrap_or(&thinned.meshes.wood);
+            levels.push(level(number, wood, &thinned.meshes.leaves, tree, look));
         }
     }
     levels

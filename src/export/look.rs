@@ -12,6 +12,7 @@ use crate::{
     texture::{TextureData, colour_bytes, linear},
     tree::{Species, textures::SpeciesTextures},
 };
+use bevy::math::Vec3;
 
 /// How the trees of a species are shaded.
 pub(super) struct SpeciesLook<'a> {
@@ -47,9 +48,17 @@ impl<'a> SpeciesLook<'a> {
         let (colour, channels) = match part {
             Part::Wood => (lightened(&self.textures.bark.base_colour, self.wood.gain), Channels::Rgb),
             Part::Leaves => (self.leaves.texture(foliage, self.leaves.gain()), Channels::Rgba),
-            Part::BareSprays => (self.leaves.bare_texture(foliage, self.leaves.gain()), Channels::Rgba),
+            Part::BareSprays => (self.bare_texture(self.leaves.gain()), Channels::Rgba),
         };
         png(&format!("{} {}", self.species.name, part.name()), &colour, channels)
+    }
+
+    /// The texture of sprays without leaves, so many times as light.
+    pub fn bare_texture(&self, gain: Vec3) -> TextureData {
+        match &self.textures.bare_foliage {
+            Some(twigs) => self.leaves.texture(twigs, gain),
+            None => self.leaves.bare_texture(&self.textures.foliage, gain),
+        }
     }
 
     /// The normals of a part; crowns of polygons and of ellipsoids have none.

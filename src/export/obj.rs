@@ -54,7 +54,7 @@ fn part_pictures(look: &SpeciesLook, part: Part, name: &str) -> Result<Vec<(Stri
             ]);
         }
         Part::Leaves => look.leaves.texture(&look.textures.foliage, Vec3::ONE),
-        Part::BareSprays => look.leaves.bare_texture(&look.textures.foliage, Vec3::ONE),
+        Part::BareSprays => look.bare_texture(Vec3::ONE),
     };
     let mut pictures = vec![(file("colour"), png(part.name(), &colour, Channels::Rgb)?)];
     if let Some(normal) = look.normal_png(part) {

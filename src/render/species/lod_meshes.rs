@@ -5,7 +5,10 @@ use super::{
     tree_material::{ATTRIBUTE_LEAF_ANCHOR, ATTRIBUTE_LEAF_AXIS, ATTRIBUTE_SWAY},
 };
 use crate::{
-    lod::{CrossedPolygons, EnvelopeLevel, EnvelopeVertices, LodBakeSettings, Scene, crossed_polygons, thinned_meshes},
+    lod::{
+        CrossedPolygons, EnvelopeLevel, EnvelopeVertices, LodBakeSettings, Scene, ThinnedMeshes, crossed_polygons,
+        thinned_meshes,
+    },
     render::settings::LevelStyle,
     tree::{
         Species, TreeModel,
@@ -37,6 +40,8 @@ pub(crate) struct VariantMeshes {
 /// The meshes of one LOD level.
 pub(crate) struct LodMeshes {
     pub wood: MeshPart,
+    /// What is drawn in its place while the tree has no leaves: more of its twigs.
+    pub bare_wood: Option<MeshPart>,
     pub leaves: Option<MeshPart>,
     /// Whether its wood is part of that of the level before. Then the latter alone is drawn while both levels are.
     pub is_wood_nested: bool,
@@ -88,6 +93,7 @@ pub(crate) fn species_meshes(
 
 fn full_level(model: TreeModel, bark: MaterialKind) -> LodMeshes {
     LodMeshes {
+        bare_wood: None,
         wood: MeshPart { mesh: wood_mesh(Arc::unwrap_or_clone(model.wood)), material: bark },
         leaves: foliage(Arc::unwrap_or_clone(model.leaves)),
         is_wood_nested: false,
@@ -102,10 +108,18 @@ fn foliage(leaves: LeafVertices) -> Option<MeshPart> {
 /// pixel is left out.
 fn thinned_levels(species: &Species, model: TreeModel, settings: &LodBakeSettings) -> Vec<LodMeshes> {
     let last = settings.decimations.len();
-    let thinned = thinned_meshes(species, &model, settings).into_iter().enumerate().map(|(number, meshes)| {
-        let material = if number + 1 == last { MaterialKind::FadingBark } else { MaterialKind::Bark };
-        let wood = MeshPart { mesh: wood_mesh(meshes.wood), material };
-        LodMeshes { wood, leaves: foliage(meshes.leaves), is_wood_nested: true }
+    let thinned = thinned_meshes(species, &model, settings).into_iter().enumerate().map(|(number, level)| {
+        let wood = |wood: WoodVertices| MeshPart {
+            mesh: wood_mesh(wood),
+            material: if number + 1 == last { MaterialKind::FadingBark } else { MaterialKind::Bark },
+        };
+        let ThinnedMeshes { meshes, bare_wood } = level;
+        LodMeshes {
+            wood: wood(meshes.wood),
+            bare_wood: bare_wood.map(wood),
+            leaves: foliage(meshes.leaves),
+            is_wood_nested: true,
+        }
     });
     let mut levels: Vec<LodMeshes> = thinned.collect();
     let first = if last == 0 { MaterialKind::FadingBark } else { MaterialKind::Bark };
@@ -130,11 +144,12 @@ fn paper_levels(
         let material = MaterialKind::Envelope(Box::new(repeating_image(&colour)));
         LodMeshes {
             wood: MeshPart { mesh: wood_mesh(trunk), material: MaterialKind::FadingBark },
+            bare_wood: None,
             leaves: Some(MeshPart { mesh: envelope_mesh(envelope, images), material }),
             is_wood_nested: false,
         }
     });
-    let low = LodMeshes { wood: low, leaves: None, is_wood_nested: false };
+    let low = LodMeshes { wood: low, bare_wood: None, leaves: None, is_wood_nested: false };
     std::iter::once(full_level(model, MaterialKind::FadingBark)).chain(medium).chain([low]).collect()
 }
 
