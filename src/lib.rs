@@ -40,6 +40,7 @@
 //! | [`sway`] | how trees answer the wind: response tables, fades, articulated trees; no rendering | tree, wind, dynamics |
 //! | `render` | how trees are drawn: prepared species, instances, LOD selection, shaders, impostors | sway, lod, tree, wind, dynamics, texture |
 //! | [`query`] | what games ask: rays, colliders, the wind among trees, [`WindListener`](query::WindListener) | sway, tree, wind, dynamics |
+//! | `export` | trees and stands as files: glTF, OBJ, impostors; no ECS | sway, lod, tree, texture, dynamics |
 //! | [`grass`] | meadows that bend in the wind, [`GrassPatch`](grass::GrassPatch) | sway, render |
 //! | [`fire`] | fires that lean with it and give light, [`Fire`](fire::Fire) | sway, wind, render |
 //! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Terrain`](terrain::Terrain) | texture, render |
@@ -52,7 +53,8 @@
 //!
 //! # Features
 //! `render` (on by default) holds all drawing. Without it, [`WindwoodMinimalPlugins`] moves the same trees on a server or in
-//! a test. `picking` makes trees pickable by Bevy's pointers, `avian` makes their colliders bodies of `avian3d`.
+//! a test. `picking` makes trees pickable by Bevy's pointers, `avian` makes their colliders bodies of `avian3d`. `export` writes trees and
+//! stands as files for other programs.
 
 #![forbid(unsafe_code)]
 
@@ -73,6 +75,8 @@ mod viewpoint;
 
 pub mod cells;
 pub mod dynamics;
+#[cfg(feature = "export")]
+pub mod export;
 pub mod fire;
 pub mod forest;
 pub mod grass;
@@ -180,4 +184,7 @@ mod guide {
     struct Shaders;
     #[doc = include_str!("../docs/guide/queries.md")]
     struct Queries;
+    #[cfg(feature = "export")]
+    #[doc = include_str!("../docs/guide/export.md")]
+    struct Export;
 }

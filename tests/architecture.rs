@@ -38,6 +38,7 @@ const MAY_KNOW: [(&str, &[&str]); 14] = [
     ("sway", &["tree", "wind", "dynamics"]),
     ("query", &["sway", "tree", "wind", "dynamics"]),
     ("render", &["sway", "lod", "tree", "texture", "wind", "dynamics"]),
+    ("export", &["sway", "lod", "tree", "texture", "dynamics"]),
     ("grass", &["sway", "render"]),
     ("fire", &["sway", "wind", "render"]),
     ("forest", &["scatter", "cells", "terrain", "tree", "lod", "sway", "wind", "render"]),

@@ -6,6 +6,7 @@
 //! | module | what |
 //! |---|---|
 //! | `decimate` | The tree's own meshes without thin branches, and with fewer but larger sprays of leaves. |
+//! | `thinned` | The levels made of such meshes, by what each species bears to lose. |
 //! | `impostor` | An atlas of views from all over the upper hemisphere, and how far such pictures lean in the wind. |
 //! | `paper` | The paper's medium level (a cone for the trunk, a textured envelope of leaves) and its low one (four polygons). |
 //! | `bake` | What `impostor` and `paper` share: a tree that rays can hit, rasterised into textures with mips. |
@@ -19,14 +20,18 @@ mod paper;
 mod reference_wind;
 mod screen_size;
 mod settings;
+mod thinned;
 
 #[cfg(test)]
 mod tests;
 
 pub use bake::scene::Scene;
-pub(crate) use decimate::thick_wood;
 pub use decimate::{DecimatedMeshes, decimate, prunable_radius_m};
-pub use impostor::{atlas::ImpostorAtlas, frame::ImpostorFrame, sway::ImpostorSway};
+pub use impostor::{
+    atlas::{ImpostorAtlas, ImpostorView},
+    frame::ImpostorFrame,
+    sway::ImpostorSway,
+};
 pub use paper::{
     envelope::{EnvelopeLevel, EnvelopeVertices},
     polygons::{CrossedPolygons, crossed_polygons},
@@ -35,3 +40,4 @@ pub use screen_size::{Lens, LodScreenSizes};
 #[cfg(all(test, feature = "render"))]
 pub(crate) use settings::LEAST_LEAF_SHARE;
 pub use settings::{Decimation, EnvelopeSettings, ImpostorSettings, LodBakeSettings, MOST_LEVELS};
+pub use thinned::{ThinnedMeshes, thinned_meshes};

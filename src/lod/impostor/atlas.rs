@@ -10,7 +10,7 @@
 //! larger, that is decided at random as well. To add up the three coverages instead, and to test the sum against a half,
 //! would thin out what is sparse and thicken what is dense.
 
-use bevy::math::UVec2;
+use bevy::math::{UVec2, Vec2, Vec3};
 
 use super::frame::{ImpostorFrame, view_basis};
 use crate::{
@@ -86,11 +86,35 @@ impl ImpostorAtlas {
         atlas
     }
 
+    /// The views of a grid, row by row from the top.
+    pub fn views(&self) -> impl Iterator<Item = ImpostorView> + '_ {
+        let per_side = self.views_per_side;
+        let cells = (0..per_side).flat_map(move |row| (0..per_side).map(move |column| UVec2::new(column, row)));
+        cells.map(move |cell| {
+            let basis = view_basis(cell, per_side);
+            let half_m = self.frame.half_m(&basis).truncate();
+            ImpostorView { to_eye: -basis.forward, right: basis.right, up: basis.up, half_m }
+        })
+    }
+
     /// How many grids of views lie one below another: one for each tree, two where it has a bare one.
     #[must_use]
     pub fn view_grids(&self) -> u32 {
         self.trees * (1 + u32::from(self.has_bare))
     }
+}
+
+/// What a view of an atlas shows: a parallel projection of the upright cylinder around the tree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpostorView {
+    /// From the tree to the eye, a unit vector.
+    pub to_eye: Vec3,
+    /// To the right in the picture, level.
+    pub right: Vec3,
+    /// Up in the picture.
+    pub up: Vec3,
+    /// Half the width and half the height of what the tile shows, about the frame's centre, m.
+    pub half_m: Vec2,
 }
 
 /// All views of a tree, and what share of each texel of their coverage is covered.

@@ -6,13 +6,12 @@ use super::{
 };
 use crate::{
     lod::{
-        CrossedPolygons, Decimation, EnvelopeLevel, EnvelopeVertices, Lens, LodBakeSettings, LodScreenSizes, Scene,
-        crossed_polygons, decimate, prunable_radius_m, thick_wood,
+        CrossedPolygons, EnvelopeLevel, EnvelopeVertices, LodBakeSettings, Scene, ThinnedMeshes, crossed_polygons,
+        thinned_meshes,
     },
     render::settings::LevelStyle,
     tree::{
-        Growth, Species, TreeModel,
-        crown::impressionist::leaves_at,
+        Species, TreeModel,
         textures::{SpeciesTextures, species_textures},
         vertices::{LeafVertices, WoodVertices},
     },
@@ -23,15 +22,6 @@ use bevy::{
     prelude::*,
 };
 use std::sync::Arc;
-
-/// Share of the side of its wood that each level of a tree that sheds its leaves keeps at least: under leaves, and without them, where
-/// twigs are all that is seen of a crown. Branches of birches are thin: with all that may be left out under the leaves of an oak, a birch
-/// would be a pole in spring.
-const LEAST_WOOD_SHARE: f32 = 0.45;
-const LEAST_BARE_WOOD_SHARE: f32 = 0.9;
-
-/// A plant with no more vertices of leaves than so many is never thinned: its few leaves, enlarged, would look like another plant.
-const SMALL_VERTICES: usize = 2000;
 
 /// The meshes of a species at one age.
 pub(crate) struct SpeciesMeshes {
@@ -91,42 +81,14 @@ pub(crate) fn species_meshes(
     settings: &LodBakeSettings,
 ) -> SpeciesMeshes {
     let textures = (has_images || style == LevelStyle::Paper).then(|| species_textures(species));
-    // Ellipsoids are few, and each is seen: none may be left out. Impressionist crowns know which of their polygons may.
-    let is_indivisible = matches!(species.growth, Growth::Gardner(_) | Growth::Impressionist(_));
-    let leaf_share = |share| if is_indivisible { 1.0 } else { share };
-    let is_evergreen = species.phenology.evergreen;
-    let decimations = |model: &TreeModel| -> Vec<SeasonalDecimation> {
-        if !is_indivisible && model.leaves.positions.len() <= SMALL_VERTICES {
-            return vec![SeasonalDecimation::default(); settings.decimations.len()];
-        }
-        let of_level = |part: &Decimation| {
-            let radius_m = |share| prunable_radius_m(&model.skeleton, part.least_radius_m, share);
-            let leafy_m = if is_evergreen { part.least_radius_m } else { radius_m(LEAST_WOOD_SHARE) };
-            let bare_m = if is_evergreen { leafy_m } else { radius_m(LEAST_BARE_WOOD_SHARE) };
-            let in_leaf = Decimation { least_radius_m: leafy_m, leaf_share: leaf_share(part.leaf_share) };
-            SeasonalDecimation { in_leaf, bare_radius_m: (bare_m < leafy_m).then_some(bare_m) }
-        };
-        settings.decimations.iter().map(of_level).collect()
-    };
     let levels = |model: TreeModel| match (style, &textures) {
         (LevelStyle::Paper, Some(textures)) => paper_levels(species, model, textures, settings),
-        (LevelStyle::Thinned, _) => {
-            let decimations = decimations(&model);
-            thinned_levels(species, model, &decimations)
-        }
+        (LevelStyle::Thinned, _) => thinned_levels(species, model, settings),
         (LevelStyle::Full | LevelStyle::Paper, _) => vec![full_level(model, MaterialKind::Bark)],
     };
     let variant = |model: TreeModel| VariantMeshes { height_m: model.height_m(), lods: levels(model) };
     let variants = models.into_iter().map(variant).collect();
     SpeciesMeshes { images: textures.filter(|_| has_images).as_ref().map(SpeciesImages::from), variants }
-}
-
-/// What is left out at a level.
-#[derive(Clone, Copy, Default)]
-struct SeasonalDecimation {
-    in_leaf: Decimation,
-    /// Branches as thick as this stay while the tree is bare, m, where those are more.
-    bare_radius_m: Option<f32>,
 }
 
 fn full_level(model: TreeModel, bark: MaterialKind) -> LodMeshes {
@@ -143,22 +105,21 @@ fn foliage(leaves: LeafVertices) -> Option<MeshPart> {
 }
 
 /// The tree itself, and thinned ones. Only the last bark fades, into the impostor. Between the others no more than twigs thinner than a
-/// pixel is left out. Impressionist crowns have the polygons of the distance at which the level begins, on a usual camera's picture.
-fn thinned_levels(species: &Species, model: TreeModel, decimations: &[SeasonalDecimation]) -> Vec<LodMeshes> {
-    let last = decimations.len();
-    let thinned = decimations.iter().enumerate().map(|(number, decimation)| {
-        let mut meshes = decimate(&model, &decimation.in_leaf);
-        if let Growth::Impressionist(crown) = &species.growth {
-            let begin_m = LodScreenSizes::default().distances_of_three_m(crown.height_m, Lens::default())[number];
-            meshes.leaves = leaves_at(crown, &model.skeleton, begin_m);
-        }
+/// pixel is left out.
+fn thinned_levels(species: &Species, model: TreeModel, settings: &LodBakeSettings) -> Vec<LodMeshes> {
+    let last = settings.decimations.len();
+    let thinned = thinned_meshes(species, &model, settings).into_iter().enumerate().map(|(number, level)| {
         let wood = |wood: WoodVertices| MeshPart {
             mesh: wood_mesh(wood),
             material: if number + 1 == last { MaterialKind::FadingBark } else { MaterialKind::Bark },
         };
-        let bare_wood =
-            decimation.bare_radius_m.map(|radius_m| wood(thick_wood(&model.wood, &model.skeleton, radius_m)));
-        LodMeshes { wood: wood(meshes.wood), bare_wood, leaves: foliage(meshes.leaves), is_wood_nested: true }
+        let ThinnedMeshes { meshes, bare_wood } = level;
+        LodMeshes {
+            wood: wood(meshes.wood),
+            bare_wood: bare_wood.map(wood),
+            leaves: foliage(meshes.leaves),
+            is_wood_nested: true,
+        }
     });
     let mut levels: Vec<LodMeshes> = thinned.collect();
     let first = if last == 0 { MaterialKind::FadingBark } else { MaterialKind::Bark };
@@ -238,7 +199,7 @@ mod tests {
     use super::*;
     use crate::{
         lod::LEAST_LEAF_SHARE,
-        tree::{MOST_ENLARGED, crown::impressionist::ImpressionistCrown},
+        tree::{Growth, MOST_ENLARGED, crown::impressionist::ImpressionistCrown},
     };
 
     #[test]

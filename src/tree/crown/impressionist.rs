@@ -32,7 +32,10 @@
 use rand::Rng;
 
 pub use super::impressionist_settings::{BRANCHES_LIMIT, CrownForm, ImpressionistCrown, LIMBS_LIMIT};
-use super::{polygon_texture::polygon_texture, polygons};
+use super::{
+    polygon_texture::{polygon_texture, rgb},
+    polygons,
+};
 use crate::{
     texture::TextureData,
     tree::{skeleton::Skeleton, vertices::LeafVertices},
@@ -67,4 +70,12 @@ pub fn leaves_at(crown: &ImpressionistCrown, skeleton: &Skeleton, distance_m: f3
 #[must_use]
 pub fn texture(crown: &ImpressionistCrown, seed: u64) -> TextureData {
     polygon_texture(crown, seed)
+}
+
+/// The colour of a polygon by the texture's value at its anchor (0 outermost to 1), sRGB: hue and saturation of the crown, and a
+/// brightness that falls towards the middle.
+#[must_use]
+pub fn polygon_colour(crown: &ImpressionistCrown, depth: f32) -> [f32; 3] {
+    let (least, greatest) = (crown.least_brightness, crown.greatest_brightness);
+    rgb(crown.hue_deg, crown.saturation, greatest + depth.clamp(0.0, 1.0) * (least - greatest))
 }

@@ -127,7 +127,7 @@ impl Twig {
 }
 
 /// sRGB of a hue (degrees), saturation and value: Smith, "Color gamut transform pairs", SIGGRAPH 1978.
-fn rgb(hue_deg: f32, saturation: f32, value: f32) -> [f32; 3] {
+pub(super) fn rgb(hue_deg: f32, saturation: f32, value: f32) -> [f32; 3] {
     [5.0, 3.0, 1.0].map(|shift| {
         let place = (shift + hue_deg / 60.0).rem_euclid(6.0);
         value * (1.0 - saturation * place.min(4.0 - place).clamp(0.0, 1.0))
