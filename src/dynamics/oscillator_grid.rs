@@ -177,7 +177,8 @@ impl OscillatorGrid {
         [middle, middle * middle - of_low / square, 1.0 / square].map(|coefficient| coefficient as f32)
     }
 
-    fn damped_share(&self, damping_ratio: f32) -> f32 {
+    /// The weight of the greater damping ratio for a beam's own.
+    pub(crate) fn damped_share(&self, damping_ratio: f32) -> f32 {
         let [low, high] = self.damping_ratios;
         let [a, b, c] = self.damping_mix();
         let ratio = if damping_ratio > low { damping_ratio.min(high) } else { low };

@@ -4,13 +4,14 @@ use super::{
     buffers::{buffer_writes, sway_buffers::SwayBuffers},
     capabilities::RenderCapabilities,
     draw::{
-        bounds::fit_tree_bounds,
+        bounds::{fit_live_bounds, fit_tree_bounds},
         components::DrawnTree,
         layers::copy_render_layers,
         mesh_entities::update_tree_meshes,
         removal::{LostMeshes, note_lost_mesh, remove_tree_meshes, restore_lost_meshes},
     },
     gpu::{
+        live_upload::{LiveUploads, upload_live_trees},
         pose_pass::{self, PoseDispatch},
         upload::{PackedWind, UploadState, pack_incoming_wind, upload_frame, upload_winds},
     },
@@ -75,6 +76,7 @@ impl Plugin for TreeRenderPlugin {
             .init_resource::<SwayBuffers>()
             .init_resource::<UploadState>()
             .init_resource::<PackedWind>()
+            .init_resource::<LiveUploads>()
             .init_resource::<PoseDispatch>()
             .add_message::<SpeciesPrepared>()
             .add_message::<VariantRemoved>()
@@ -93,6 +95,7 @@ impl Plugin for TreeRenderPlugin {
         let draw = timed!(
             app,
             fit_tree_bounds,
+            fit_live_bounds,
             remove_models,
             assign_instances,
             apply_level_of_detail,
@@ -103,7 +106,7 @@ impl Plugin for TreeRenderPlugin {
             copy_render_layers
         );
         let pack = timed!(app, pack_incoming_wind);
-        let upload = timed!(app, upload_winds, write_tree_rows, update_posed_trees, upload_frame);
+        let upload = timed!(app, upload_winds, write_tree_rows, update_posed_trees, upload_live_trees, upload_frame);
         let light =
             (find_lights, update_material_lights::<SwayExtension>.run_if(resource_changed::<TreeLights>)).chain();
         let can_draw = resource_exists::<RenderCapabilities>;
