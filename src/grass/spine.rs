@@ -48,10 +48,10 @@ pub fn push_bend(root: Vec3, length_m: f32, ends: [Vec3; 2], radius_m: f32, fall
     let centre = ends[0] + line * share;
     let rise = centre.y - root.y;
     // How far the centre is above the tip or below the root.
-    let off_m = rise - rise.clamp(0.0, length_m);
+    let off_m = rise - rise.max(0.0).min(length_m);
     let away = root.xz() - centre.xz();
     let way_m = (radius_m * radius_m - off_m * off_m).max(0.0).sqrt() - away.length();
-    if way_m <= 0.0 {
+    if way_m.is_nan() || way_m <= 0.0 {
         return Vec2::ZERO;
     }
     let direction = if away.length_squared() > LEAST_M { away.normalize() } else { fallback };

@@ -18,6 +18,7 @@
 mod blast;
 mod downwash;
 mod jet;
+mod smoothstep;
 mod vortex;
 
 use crate::setting::{SettingError, require};
@@ -25,6 +26,7 @@ use bevy::{
     math::{Quat, Vec3},
     reflect::Reflect,
 };
+use smoothstep::smoothstep;
 
 /// What a source blows, and how strong.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
@@ -147,19 +149,28 @@ impl SourceFlow {
         if !(place.is_finite() && rotation.is_finite()) {
             return None;
         }
+        let SourceMoment { age_s, before_s, strength } = at;
+        let flow = |form, numbers| Self { form, place, reach_m, axis: Vec3::Y, numbers };
         match *kind {
-            SourceKind::Blast { charge_kg } => blast::flow(charge_kg, place, reach_m, at),
+            SourceKind::Blast { charge_kg } => {
+                let numbers = blast::numbers(charge_kg, [age_s, before_s], strength);
+                let reach_m = reach_m.min(blast::most_reach_m(&numbers));
+                let blast = Self { reach_m, ..flow(FlowForm::Blast, numbers) };
+                (!blast::has_passed(&numbers, reach_m)).then_some(blast)
+            }
             SourceKind::Downwash { rotor_radius_m, thrust_n, ground_m } => {
-                Some(downwash::flow(rotor_radius_m, thrust_n, ground_m, place, reach_m, at))
+                let numbers = downwash::numbers(rotor_radius_m, thrust_n, place.y - ground_m, strength);
+                Some(Self { place: place.with_y(ground_m), ..flow(FlowForm::Downwash, numbers) })
             }
             SourceKind::Cone { speed_m_s, nozzle_radius_m, half_angle_deg } => {
-                let axis = rotation * Vec3::NEG_Z;
-                Some(jet::flow(speed_m_s * at.strength, nozzle_radius_m, half_angle_deg, (place, axis), reach_m))
+                let numbers = jet::numbers(speed_m_s * strength, nozzle_radius_m, half_angle_deg);
+                let axis = (rotation * Vec3::NEG_Z).normalize_or(Vec3::NEG_Z);
+                Some(Self { axis, ..flow(FlowForm::Jet, numbers) })
             }
             SourceKind::Vortex { speed_m_s, core_radius_m, length_m, spreading_m2_s } => {
-                let core_m = vortex::core_radius_m(core_radius_m, spreading_m2_s, at.age_s);
-                let speed_m_s = speed_m_s * at.strength * core_radius_m / core_m;
-                Some(vortex::flow(speed_m_s, core_m, length_m, (place, rotation * Vec3::Y), reach_m))
+                let numbers = vortex::numbers(speed_m_s * strength, core_radius_m, length_m, spreading_m2_s, age_s);
+                let axis = (rotation * Vec3::Y).normalize_or(Vec3::Y);
+                Some(Self { axis, ..flow(FlowForm::Vortex, numbers) })
             }
         }
     }
@@ -219,12 +230,6 @@ impl SourceFlow {
         let there = centre + (nearest - from).clamp_length_max(radius_m);
         self.velocity(there).length() >= least_m_s || self.velocity(centre).length() >= least_m_s
     }
-}
-
-/// Cubic step from 0 at `start` to 1 at `end`.
-fn smoothstep(start: f32, end: f32, value: f32) -> f32 {
-    let t = ((value - start) / (end - start)).clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
 }
 
 #[cfg(test)]

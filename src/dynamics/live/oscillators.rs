@@ -116,11 +116,11 @@ impl LiveTree {
         }
     }
 
-    /// Carries it over one step. `load` says what bends each beam.
-    pub fn step(&mut self, beams: &[LiveBeam], steps: &LiveSteps, mut load: impl FnMut(&LiveBeam) -> BeamLoad) {
-        for (state, beam) in self.beams.iter_mut().zip(beams) {
+    /// Carries it over one step. `load` says what bends each beam, by its number.
+    pub fn step(&mut self, beams: &[LiveBeam], steps: &LiveSteps, mut load: impl FnMut(usize, &LiveBeam) -> BeamLoad) {
+        for (index, (state, beam)) in self.beams.iter_mut().zip(beams).enumerate() {
             let Some((steps, omega)) = steps.steps.get(beam.class).zip(steps.omegas.get(beam.class)) else { continue };
-            let BeamLoad { steady, pulse } = load(beam);
+            let BeamLoad { steady, pulse } = load(index, beam);
             let square = omega * omega;
             let [before, after] = [state.load + pulse, steady + pulse].map(|load| load * square);
             state.oscillators = std::array::from_fn(|d| steps[d].advance(state.oscillators[d], before, after));

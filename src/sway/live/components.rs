@@ -115,6 +115,5 @@ impl LiveSway {
         self.angles_before.clear();
         self.angles_before.extend(self.tree.angles());
         self.wind_before = self.wind;
-        self.wind = WindAtTree::default();
     }
 }

@@ -137,7 +137,9 @@ mod tests {
                 let mut found: Vec<Entity> = index.near(place, radius_m).map(|(entity, _)| entity).collect();
                 found.sort_unstable();
                 let is_near = |(_, tree): &&(Entity, IndexedTree)| tree.centre.distance(place) <= radius_m + 6.0;
-                assert_eq!(found, all.iter().filter(is_near).map(|(entity, _)| *entity).collect::<Vec<_>>());
+                let mut expected: Vec<Entity> = all.iter().filter(is_near).map(|(entity, _)| *entity).collect();
+                expected.sort_unstable();
+                assert_eq!(found, expected);
             }
         }
         all.iter().for_each(|(entity, _)| index.remove(*entity));

@@ -3,7 +3,7 @@
 use super::{components::LiveSway, pusher::Pushers, settings::LiveSettings, wake::to_local};
 use crate::{
     dynamics::{
-        BeamLoad, Contacts, LiveBeam, LiveSteps,
+        BeamLoad, Capsule, Contacts, LiveBeam, LiveSteps,
         stand_wind::{LOW_SHARE, WindAtTree},
     },
     sway::{
@@ -55,22 +55,22 @@ pub(in crate::sway) fn step_live_trees(
         }
         let poses = pose.map_or(&[][..], TreePose::beams);
         let contacts = Contacts { beams: &model.beams, poses, scale };
-        for body in pushers.now() {
-            let capsule = to_local(&body.capsule, &stands);
-            if contacts.is_near(&capsule, 0.0) {
-                contacts.push(&mut live.tree, &capsule, body.force_n);
-            }
+        for body in pushers.now().iter().filter(|body| place.meets(&body.capsule)) {
+            contacts.push(&mut live.tree, &to_local(&body.capsule, &stands), body.force_n);
         }
     });
 }
 
-/// A tree among the flows that reach it.
+/// A tree, and the flows that reach it.
 struct TreeInFlows<'a> {
     flows: Vec<&'a SourceFlow>,
     stands: GlobalTransform,
     local_from_world: Mat3,
     scale: f32,
     height_m: f32,
+    /// A ball around it in any wind.
+    middle: Vec3,
+    radius_m: f32,
 }
 
 impl<'a> TreeInFlows<'a> {
@@ -80,7 +80,13 @@ impl<'a> TreeInFlows<'a> {
         let radius_m = 0.5 * scale * (model.bounds.max - model.bounds.min).length();
         let reaches = |flow: &&SourceFlow| flow.place.distance(middle) < flow.reach_m + radius_m;
         let flows = sources.now().iter().filter(reaches).collect();
-        Self { flows, stands, local_from_world, scale, height_m: model.height_m() }
+        Self { flows, stands, local_from_world, scale, height_m: model.height_m(), middle, radius_m }
+    }
+
+    /// Whether a body may touch it.
+    fn meets(&self, body: &Capsule) -> bool {
+        let [a, b] = body.ends;
+        a.midpoint(b).distance(self.middle) < self.radius_m + 0.5 * a.distance(b) + body.radius_m
     }
 
     /// The velocity that sources blow at a place of the world, in the tree's axes, without what comes and goes within the frame.
@@ -127,8 +133,9 @@ impl<'a> TreeInFlows<'a> {
 
 fn step(live: &mut LiveSway, sway: &ActiveSway, time_s: f64, steps: &LiveSteps, place: &TreeInFlows) {
     let LiveSway { beams, tree, stands, wind: blown, .. } = live;
+    *blown = WindAtTree::default();
     if place.flows.is_empty() {
-        tree.step(beams, steps, |_| BeamLoad::default());
+        tree.step(beams, steps, |_, _| BeamLoad::default());
         return;
     }
     *blown = WindAtTree { high: place.at_height(1.0), low: place.at_height(LOW_SHARE) };
@@ -140,7 +147,7 @@ fn step(live: &mut LiveSway, sway: &ActiveSway, time_s: f64, steps: &LiveSteps, 
         wind.high += weight * (place.local_from_world * there.high);
         wind.low += weight * (place.local_from_world * there.low);
     }
-    tree.step(beams, steps, |beam| place.load(beam, &wind));
+    tree.step(beams, steps, |_, beam| place.load(beam, &wind));
 }
 
 /// Lets trees sleep that have come to rest, and that nothing touches.

@@ -20,7 +20,6 @@
 //!
 //! Numbers: radius of the front, m; `W^(1/3)`; factor on the speed; radius of the front one frame ago.
 
-use super::{FlowForm, SourceFlow, SourceMoment};
 use bevy::math::Vec3;
 
 /// Speed of sound in air at 15 degrees C, m/s.
@@ -74,18 +73,21 @@ pub(super) fn front_scaled_m(mut time_s: f32) -> f32 {
     scaled_m + SOUND_SPEED_M_S * time_s
 }
 
-pub(super) fn flow(charge_kg: f32, place: Vec3, reach_m: f32, at: SourceMoment) -> Option<SourceFlow> {
+/// The numbers of a charge at its age now and one frame ago, s.
+pub(super) fn numbers(charge_kg: f32, [age_s, before_s]: [f32; 2], strength: f32) -> [f32; 4] {
     let root = charge_kg.cbrt();
     let front_m = |age_s: f32| root * front_scaled_m(age_s.max(0.0) / root);
-    let [now_m, before_m] = [at.age_s, at.before_s].map(front_m);
-    let flow = SourceFlow {
-        form: FlowForm::Blast,
-        place,
-        reach_m: reach_m.min(MOST_SCALED_M * root),
-        axis: Vec3::Y,
-        numbers: [now_m, root, at.strength, before_m],
-    };
-    (before_m < flow.reach_m + length_m(&flow.numbers, flow.reach_m)).then_some(flow)
+    [front_m(age_s), root, strength, front_m(before_s)]
+}
+
+/// How far its wind is felt at most, m.
+pub(super) fn most_reach_m(numbers: &[f32; 4]) -> f32 {
+    MOST_SCALED_M * numbers[1]
+}
+
+/// Whether all of the wave has left a ball about the charge.
+pub(super) fn has_passed(numbers: &[f32; 4], radius_m: f32) -> bool {
+    numbers[3] >= radius_m + length_m(numbers, radius_m)
 }
 
 /// How far behind the front the wave reaches at a distance, m.
@@ -109,17 +111,23 @@ pub(super) fn with_front(&[_, root, strength, before_m]: &[f32; 4], front_m: f32
     [front_m, root, strength, before_m]
 }
 
-/// Where the front was at the middles of even parts of that part of the frame in which it had passed a distance, and what share of the frame
-/// each is; none if the wave was not there in it.
+/// Where the front was in even steps of that part of its way in the frame that lay beyond a distance, and what share of the frame it took for
+/// each; none if the wave was not there in it.
 pub(super) fn fronts(numbers: &[f32; 4], distance_m: f32) -> impl Iterator<Item = (f32, f32)> + use<> {
-    let &[now_m, _, _, before_m] = numbers;
+    let &[now_m, root, _, before_m] = numbers;
     let length_m = length_m(numbers, distance_m);
     let was_there = now_m > distance_m && before_m < distance_m + length_m;
     let from_m = before_m.max(distance_m);
-    let passed = if now_m > before_m { (now_m - from_m) / (now_m - before_m) } else { 0.0 };
     let parts = (SAMPLES_A_PHASE * PHASES * (now_m - from_m) / length_m).ceil().clamp(1.0, MOST_SAMPLES);
-    let count = if was_there { parts as u32 } else { 0 };
-    (0..count).map(move |part| (from_m + (now_m - from_m) * (part as f32 + 0.5) / parts, passed / parts))
+    let count = if was_there && now_m > before_m { parts as u32 } else { 0 };
+    // Time for its way by that of sound: it slows down.
+    let slowness = move |front_m: f32| 1.0 / mach(front_m / root);
+    let frame = (slowness(before_m) + 4.0 * slowness(before_m.midpoint(now_m)) + slowness(now_m)) / 6.0;
+    let step_m = (now_m - from_m) / parts;
+    (0..count).map(move |part| {
+        let front_m = from_m + step_m * (part as f32 + 0.5);
+        (front_m, step_m * slowness(front_m) / (frame * (now_m - before_m)))
+    })
 }
 
 /// Whether the wave was in a ball in this frame, and is as strong as that there.

@@ -20,7 +20,7 @@
 //!
 //! Numbers: `w`, m/s; `R`, m; height of the rotor above ground, m.
 
-use super::{FlowForm, SourceFlow, SourceMoment, smoothstep};
+use super::smoothstep::smoothstep;
 use crate::constants::AIR_DENSITY_KG_M3;
 use bevy::math::{Vec3, Vec3Swizzles};
 use std::f32::consts::PI;
@@ -32,25 +32,13 @@ const STRONGEST_X: f32 = 1.121;
 /// Diameters of the wake over which its core is not yet mixed (Pope 2000, section 5.1).
 const CORE_DIAMETERS: f32 = 6.0;
 
-pub(super) fn flow(
-    rotor_radius_m: f32,
-    thrust_n: f32,
-    ground_m: f32,
-    place: Vec3,
-    reach_m: f32,
-    at: SourceMoment,
-) -> SourceFlow {
+/// The numbers of a rotor at a height above ground.
+pub(super) fn numbers(rotor_radius_m: f32, thrust_n: f32, height_m: f32, strength: f32) -> [f32; 4] {
     let disc_m2 = PI * rotor_radius_m * rotor_radius_m;
     let wake_m_s = 2.0 * (thrust_n / (2.0 * AIR_DENSITY_KG_M3 as f32 * disc_m2)).sqrt();
-    let height_m = (place.y - ground_m).max(0.1 * rotor_radius_m);
+    let height_m = height_m.max(0.1 * rotor_radius_m);
     let slowed = (CORE_DIAMETERS * 2.0 * rotor_radius_m / height_m).min(1.0);
-    SourceFlow {
-        form: FlowForm::Downwash,
-        place: place.with_y(ground_m),
-        reach_m,
-        axis: Vec3::Y,
-        numbers: [at.strength * wake_m_s * slowed, rotor_radius_m / slowed, height_m, 0.0],
-    }
+    [strength * wake_m_s * slowed, rotor_radius_m / slowed, height_m, 0.0]
 }
 
 pub(super) fn velocity(&[wake_m_s, radius_m, height_m, _]: &[f32; 4], from: Vec3) -> Vec3 {

@@ -14,19 +14,13 @@
 //!
 //! Numbers: speed at the nozzle, m/s; `x_0`, m; `S`.
 
-use super::{FlowForm, SourceFlow, smoothstep};
+use super::smoothstep::smoothstep;
 use bevy::math::Vec3;
 
-pub(super) fn flow(
-    speed_m_s: f32,
-    nozzle_radius_m: f32,
-    half_angle_deg: f32,
-    (place, axis): (Vec3, Vec3),
-    reach_m: f32,
-) -> SourceFlow {
+/// The numbers of a nozzle.
+pub(super) fn numbers(speed_m_s: f32, nozzle_radius_m: f32, half_angle_deg: f32) -> [f32; 4] {
     let slope = half_angle_deg.to_radians().tan();
-    let numbers = [speed_m_s, nozzle_radius_m / slope, slope, 0.0];
-    SourceFlow { form: FlowForm::Jet, place, reach_m, axis: axis.normalize_or(Vec3::NEG_Z), numbers }
+    [speed_m_s, nozzle_radius_m / slope, slope, 0.0]
 }
 
 pub(super) fn velocity(&[speed_m_s, origin_m, slope, _]: &[f32; 4], axis: Vec3, from: Vec3) -> Vec3 {

@@ -10,26 +10,19 @@
 //!
 //! Numbers: `v_m`, m/s; `r_m`, m; half its length, m.
 
-use super::{FADES_FROM, FlowForm, SourceFlow, smoothstep};
+use super::smoothstep::smoothstep;
 use bevy::math::Vec3;
 
 /// The root of `exp(a) = 1 + 2a`.
 const PEAK: f32 = 1.256_431_2;
 
-/// `r_m` after a time.
-pub(super) fn core_radius_m(first_m: f32, viscosity_m2_s: f32, age_s: f32) -> f32 {
-    (first_m * first_m + 4.0 * PEAK * viscosity_m2_s * age_s.max(0.0)).sqrt()
-}
+/// From this share of half its length on it ends.
+const ENDS_FROM: f32 = 0.8;
 
-pub(super) fn flow(
-    speed_m_s: f32,
-    core_m: f32,
-    length_m: f32,
-    (place, axis): (Vec3, Vec3),
-    reach_m: f32,
-) -> SourceFlow {
-    let numbers = [speed_m_s, core_m, 0.5 * length_m, 0.0];
-    SourceFlow { form: FlowForm::Vortex, place, reach_m, axis: axis.normalize_or(Vec3::Y), numbers }
+/// The numbers of a vortex of which the core has grown for some time, s.
+pub(super) fn numbers(speed_m_s: f32, first_core_m: f32, length_m: f32, viscosity_m2_s: f32, age_s: f32) -> [f32; 4] {
+    let core_m = (first_core_m * first_core_m + 4.0 * PEAK * viscosity_m2_s * age_s.max(0.0)).sqrt();
+    [speed_m_s * first_core_m / core_m, core_m, 0.5 * length_m, 0.0]
 }
 
 pub(super) fn velocity(&[speed_m_s, core_m, half_length_m, _]: &[f32; 4], axis: Vec3, from: Vec3) -> Vec3 {
@@ -38,7 +31,7 @@ pub(super) fn velocity(&[speed_m_s, core_m, half_length_m, _]: &[f32; 4], axis: 
     let x2 = PEAK * out.length_squared();
     // (1 - exp(-x2)) / x2.
     let share = if x2 > 1e-4 { (1.0 - (-x2).exp()) / x2 } else { 1.0 - 0.5 * x2 };
-    let within = 1.0 - smoothstep(FADES_FROM, 1.0, along_m.abs() / half_length_m);
+    let within = 1.0 - smoothstep(ENDS_FROM, 1.0, along_m.abs() / half_length_m);
     axis.cross(out) * (speed_m_s * (PEAK + 0.5) * share * within)
 }
 
