@@ -5,9 +5,9 @@ use bevy::prelude::*;
 use bevy_windwood::prelude::*;
 
 /// Where the charge lies, m.
-const CHARGE: Vec3 = Vec3::new(-11.0, 0.5, 3.0);
+const CHARGE: Vec3 = Vec3::new(-14.0, 0.5, 2.0);
 /// Mass of TNT. Less would move the leaves, and hardly the stem.
-const CHARGE_KG: f32 = 250.0;
+const CHARGE_KG: f32 = 600.0;
 /// Radius of the ball, m, its speed, m/s, and how far it goes to either side, m.
 const BALL_M: f32 = 0.7;
 const BALL_M_S: f32 = 3.0;

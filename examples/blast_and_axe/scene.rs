@@ -50,9 +50,9 @@ impl Scene for BlastScene {
 
     fn camera_transform(&self) -> Transform {
         let (eye, target) = match self.options.event {
-            Event::Blast => (Vec3::new(3.0, 2.6, 25.0), Vec3::new(-1.0, 5.0, 0.0)),
+            Event::Blast => (Vec3::new(2.5, 2.2, 16.0), Vec3::new(0.6, 3.4, 0.0)),
             Event::Axe => (Vec3::new(4.0, 2.0, 14.0), Vec3::new(0.0, 5.0, 0.0)),
-            Event::Ball => (Vec3::new(0.6, 1.9, 12.6), Vec3::new(1.2, 0.75, 6.0)),
+            Event::Ball => (Vec3::new(0.2, 2.7, 11.6), Vec3::new(1.2, 0.7, 6.0)),
             Event::Helicopter => (Vec3::new(1.5, 2.4, 19.5), Vec3::new(0.0, 2.2, 2.0)),
         };
         Transform::from_translation(eye).looking_at(target, Vec3::Y)

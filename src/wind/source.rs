@@ -130,6 +130,8 @@ pub(crate) struct SourceFlow {
     pub axis: Vec3,
     /// Its numbers: see the file of each form.
     pub numbers: [f32; 4],
+    /// Time since the last frame, s.
+    pub frame_s: f32,
 }
 
 /// From this share of its reach on a source fades out.
@@ -150,7 +152,7 @@ impl SourceFlow {
             return None;
         }
         let SourceMoment { age_s, before_s, strength } = at;
-        let flow = |form, numbers| Self { form, place, reach_m, axis: Vec3::Y, numbers };
+        let flow = |form, numbers| Self { form, place, reach_m, axis: Vec3::Y, numbers, frame_s: age_s - before_s };
         match *kind {
             SourceKind::Blast { charge_kg } => {
                 let numbers = blast::numbers(charge_kg, [age_s, before_s], strength);
@@ -209,7 +211,7 @@ impl SourceFlow {
     /// not there.
     pub fn pulse(&self, at: Vec3) -> impl Iterator<Item = (Vec3, f32)> + use<> {
         let flow = *self;
-        blast::fronts(&self.numbers, (at - self.place).length()).map(move |(front_m, share)| {
+        blast::fronts(&self.numbers, (at - self.place).length(), self.frame_s).map(move |(front_m, share)| {
             let then = Self { numbers: blast::with_front(&flow.numbers, front_m), ..flow };
             (then.velocity(at), share)
         })

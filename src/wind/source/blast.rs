@@ -111,22 +111,19 @@ pub(super) fn with_front(&[_, root, strength, before_m]: &[f32; 4], front_m: f32
     [front_m, root, strength, before_m]
 }
 
-/// Where the front was in even steps of that part of its way in the frame that lay beyond a distance, and what share of the frame it took for
+/// Where the front was in even steps of that part of its way in a frame that lay beyond a distance, and what share of the frame it took for
 /// each; none if the wave was not there in it.
-pub(super) fn fronts(numbers: &[f32; 4], distance_m: f32) -> impl Iterator<Item = (f32, f32)> + use<> {
+pub(super) fn fronts(numbers: &[f32; 4], distance_m: f32, frame_s: f32) -> impl Iterator<Item = (f32, f32)> + use<> {
     let &[now_m, root, _, before_m] = numbers;
     let length_m = length_m(numbers, distance_m);
     let was_there = now_m > distance_m && before_m < distance_m + length_m;
     let from_m = before_m.max(distance_m);
     let parts = (SAMPLES_A_PHASE * PHASES * (now_m - from_m) / length_m).ceil().clamp(1.0, MOST_SAMPLES);
-    let count = if was_there && now_m > before_m { parts as u32 } else { 0 };
-    // Time for its way by that of sound: it slows down.
-    let slowness = move |front_m: f32| 1.0 / mach(front_m / root);
-    let frame = (slowness(before_m) + 4.0 * slowness(before_m.midpoint(now_m)) + slowness(now_m)) / 6.0;
+    let count = if was_there && frame_s > 0.0 { parts as u32 } else { 0 };
     let step_m = (now_m - from_m) / parts;
     (0..count).map(move |part| {
         let front_m = from_m + step_m * (part as f32 + 0.5);
-        (front_m, step_m * slowness(front_m) / (frame * (now_m - before_m)))
+        (front_m, step_m / (SOUND_SPEED_M_S * mach(front_m / root) * frame_s))
     })
 }
 
