@@ -21,7 +21,7 @@ pub struct LiveBeam {
     gain: f32,
     drag_exponent: f32,
     /// Class of its natural frequency: one that has an oscillator.
-    pub(super) class: usize,
+    pub class: usize,
     /// Share of the more strongly damped oscillator.
     pub(super) damped: f32,
 }

@@ -52,12 +52,17 @@ fn omegas(grid: &OscillatorGrid) -> impl Iterator<Item = f32> {
 }
 
 /// What bends a beam during a step: static free angles, rad.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeamLoad {
-    /// The load at the end of the step: within it, it is linear.
-    pub steady: Vec3A,
+    /// The load at the end of the step: within it, it is linear. None where it stays as it was.
+    pub steady: Option<Vec3A>,
     /// The mean over the step of what comes and goes within it.
     pub pulse: Vec3A,
+}
+
+impl BeamLoad {
+    /// No load.
+    pub const NONE: Self = Self { steady: Some(Vec3A::ZERO), pulse: Vec3A::ZERO };
 }
 
 /// What is added to the angles of a tree's beams.
@@ -121,6 +126,7 @@ impl LiveTree {
         for (index, (state, beam)) in self.beams.iter_mut().zip(beams).enumerate() {
             let Some((steps, omega)) = steps.steps.get(beam.class).zip(steps.omegas.get(beam.class)) else { continue };
             let BeamLoad { steady, pulse } = load(index, beam);
+            let steady = steady.unwrap_or(state.load);
             let square = omega * omega;
             let [before, after] = [state.load + pulse, steady + pulse].map(|load| load * square);
             state.oscillators = std::array::from_fn(|d| steps[d].advance(state.oscillators[d], before, after));

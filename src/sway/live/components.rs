@@ -23,6 +23,8 @@ pub struct LiveSway {
     made_for: Option<(u64, AssetId<TreeModel>, f32, f32, Canopy)>,
     /// Blows that it has yet to feel: place and impulse, in the world.
     pub(super) blows: Vec<[Vec3; 2]>,
+    /// Frames since it woke up.
+    pub(super) frames: u32,
     /// Whether something touches it in this frame.
     pub(super) is_touched: bool,
     /// The wind of sources at the tree, in its axes.
@@ -115,5 +117,6 @@ impl LiveSway {
         self.angles_before.clear();
         self.angles_before.extend(self.tree.angles());
         self.wind_before = self.wind;
+        self.frames = self.frames.wrapping_add(1);
     }
 }

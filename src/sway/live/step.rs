@@ -3,7 +3,7 @@
 use super::{components::LiveSway, pusher::Pushers, settings::LiveSettings, wake::to_local};
 use crate::{
     dynamics::{
-        BeamLoad, Capsule, Contacts, LiveBeam, LiveSteps,
+        BeamLoad, Capsule, Contacts, FrequencyClasses, LiveBeam, LiveSteps,
         stand_wind::{LOW_SHARE, WindAtTree},
     },
     sway::{
@@ -19,6 +19,11 @@ use bevy::{math::Vec3A, prelude::*};
 
 /// A load that is spread wider than this, m, is looked at in four places.
 const SPREAD_M: f32 = 0.5;
+
+/// What sources blow is looked up anew for each beam so often, Hz: for those that sway slowly, and for the others from this frequency on.
+const SLOW_LOOKUPS_HZ: f64 = 15.0;
+const FAST_LOOKUPS_HZ: f64 = 30.0;
+const FAST_FROM_HZ: f32 = 2.0;
 
 /// A regular tetrahedron, at the distance at which its corners have a standard deviation of 1 in each direction.
 const CORNERS: [Vec3; 4] =
@@ -39,7 +44,10 @@ pub(in crate::sway) fn step_live_trees(
     )>,
 ) {
     let Some(newest) = sway.now().last() else { return };
-    let steps = LiveSteps::new(&newest.response.table.grid, clock.time_s - clock.previous_s);
+    let grid = &newest.response.table.grid;
+    let frame_s = clock.time_s - clock.previous_s;
+    let steps = LiveSteps::new(grid, frame_s);
+    let lookups = Lookups::new(grid.classes, frame_s);
     trees.par_iter_mut().for_each(|((of, grown, canopy), (transform, global, is_child), pose, mut live)| {
         let Some(model) = models.get(&grown.model) else { return };
         let stands = stands_at(transform, global, is_child);
@@ -51,7 +59,7 @@ pub(in crate::sway) fn step_live_trees(
         live.feel_blows(&model.beams, &stands, local_from_world, scale);
         let place = TreeInFlows::new(&sources, model, stands, local_from_world);
         if let Some(steps) = &steps {
-            step(&mut live, &sway, clock.time_s, steps, &place);
+            step(&mut live, &sway, clock.time_s, (steps, lookups), &place);
         }
         let poses = pose.map_or(&[][..], TreePose::beams);
         let contacts = Contacts { beams: &model.beams, poses, scale };
@@ -59,6 +67,31 @@ pub(in crate::sway) fn step_live_trees(
             contacts.push(&mut live.tree, &to_local(&body.capsule, &stands), body.force_n);
         }
     });
+}
+
+/// Every how many frames the load of a beam is looked up.
+#[derive(Clone, Copy)]
+struct Lookups {
+    first_fast: usize,
+    slow_frames: u32,
+    fast_frames: u32,
+}
+
+impl Lookups {
+    fn new(classes: FrequencyClasses, frame_s: f64) -> Self {
+        let frames = |hz: f64| (1.0 / (hz * frame_s) + 0.01).clamp(1.0, 16.0) as u32;
+        Self {
+            first_fast: classes.nearest(classes.coordinate(FAST_FROM_HZ)),
+            slow_frames: frames(SLOW_LOOKUPS_HZ),
+            fast_frames: frames(FAST_LOOKUPS_HZ),
+        }
+    }
+
+    /// Whether the load of a beam is due. That of its neighbours comes in other frames.
+    fn is_due(&self, beam: &LiveBeam, index: usize, frame: u32) -> bool {
+        let every = if beam.class < self.first_fast { self.slow_frames } else { self.fast_frames };
+        frame <= 1 || frame.wrapping_add(index as u32).is_multiple_of(every)
+    }
 }
 
 /// A tree, and the flows that reach it.
@@ -101,24 +134,30 @@ impl<'a> TreeInFlows<'a> {
         self.local_from_world * self.flows.iter().map(|flow| flow.velocity(place)).sum::<Vec3>()
     }
 
-    /// The load of a beam in a wind.
-    fn load(&self, beam: &LiveBeam, wind: &WindAtTree) -> BeamLoad {
+    /// The load of a beam in a wind; the steady one where it is due.
+    fn load(&self, beam: &LiveBeam, wind: &WindAtTree, is_due: bool) -> BeamLoad {
+        let has_pulse = self.flows.iter().any(|flow| flow.is_pulse());
+        if !(is_due || has_pulse) {
+            return BeamLoad { steady: None, pulse: Vec3A::ZERO };
+        }
         let wind = wind.at(beam.load_at.y / self.height_m.max(f32::MIN_POSITIVE));
         let middle = self.stands.transform_point(beam.load_at);
         let spread_m = beam.spread_m * self.scale;
         if spread_m < SPREAD_M {
-            return self.load_at(beam, wind, middle);
+            let [steady, pulse] = self.load_at(beam, wind, middle);
+            return BeamLoad { steady: Some(steady), pulse };
         }
-        let mut load = BeamLoad::default();
+        let (mut steady, mut pulse) = (Vec3A::ZERO, Vec3A::ZERO);
         for corner in CORNERS {
-            let there = self.load_at(beam, wind, middle + corner * spread_m);
-            load.steady += there.steady * 0.25;
-            load.pulse += there.pulse * 0.25;
+            let [steady_there, pulse_there] = self.load_at(beam, wind, middle + corner * spread_m);
+            steady += steady_there * 0.25;
+            pulse += pulse_there * 0.25;
         }
-        load
+        BeamLoad { steady: Some(steady), pulse }
     }
 
-    fn load_at(&self, beam: &LiveBeam, wind: Vec3, place: Vec3) -> BeamLoad {
+    /// The steady load, and that of pulses, if all were at one place.
+    fn load_at(&self, beam: &LiveBeam, wind: Vec3, place: Vec3) -> [Vec3A; 2] {
         let steady = self.steady(place);
         let mut pulse = Vec3A::ZERO;
         for flow in self.flows.iter().filter(|flow| flow.is_pulse()) {
@@ -127,15 +166,21 @@ impl<'a> TreeInFlows<'a> {
                 .map(|(velocity, share)| beam.load(wind + steady, self.local_from_world * velocity) * share)
                 .sum::<Vec3A>();
         }
-        BeamLoad { steady: beam.load(wind, steady), pulse }
+        [beam.load(wind, steady), pulse]
     }
 }
 
-fn step(live: &mut LiveSway, sway: &ActiveSway, time_s: f64, steps: &LiveSteps, place: &TreeInFlows) {
-    let LiveSway { beams, tree, stands, wind: blown, .. } = live;
+fn step(
+    live: &mut LiveSway,
+    sway: &ActiveSway,
+    time_s: f64,
+    (steps, lookups): (&LiveSteps, Lookups),
+    place: &TreeInFlows,
+) {
+    let LiveSway { beams, tree, stands, wind: blown, frames, .. } = live;
     *blown = WindAtTree::default();
     if place.flows.is_empty() {
-        tree.step(beams, steps, |_, _| BeamLoad::default());
+        tree.step(beams, steps, |_, _| BeamLoad::NONE);
         return;
     }
     *blown = WindAtTree { high: place.at_height(1.0), low: place.at_height(LOW_SHARE) };
@@ -147,7 +192,7 @@ fn step(live: &mut LiveSway, sway: &ActiveSway, time_s: f64, steps: &LiveSteps, 
         wind.high += weight * (place.local_from_world * there.high);
         wind.low += weight * (place.local_from_world * there.low);
     }
-    tree.step(beams, steps, |_, beam| place.load(beam, &wind));
+    tree.step(beams, steps, |index, beam| place.load(beam, &wind, lookups.is_due(beam, index, *frames)));
 }
 
 /// Lets trees sleep that have come to rest, and that nothing touches.

@@ -130,7 +130,7 @@ impl Experiment {
         // In the first period it comes into the steady state that the table has.
         for frame in 1..=2 * frames {
             live.step(&prepared, &steps, |beam, _| BeamLoad {
-                steady: load(&followers[beam], frame % frames),
+                steady: Some(load(&followers[beam], frame % frames)),
                 pulse: Vec3A::ZERO,
             });
             if frame > frames && frame % FRAMES == 0 {

@@ -61,7 +61,7 @@ impl Touched {
 
     fn frame(&mut self, frame_s: f64, body: Option<(Capsule, f32)>) {
         let steps = LiveSteps::new(&wind().grid, frame_s).expect("time passes");
-        self.live.step(&self.prepared, &steps, |_, _| BeamLoad::default());
+        self.live.step(&self.prepared, &steps, |_, _| BeamLoad::NONE);
         if let Some((body, most_n)) = body {
             let poses = self.poses();
             Contacts { beams: &self.beams, poses: &poses, scale: 1.0 }.push(&mut self.live, &body, most_n);

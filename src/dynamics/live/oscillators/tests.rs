@@ -44,7 +44,7 @@ fn beam(class: f32) -> LiveBeam {
 }
 
 fn steady(load: f32) -> BeamLoad {
-    BeamLoad { steady: Vec3A::X * load, pulse: Vec3A::ZERO }
+    BeamLoad { steady: Some(Vec3A::X * load), pulse: Vec3A::ZERO }
 }
 
 /// The transfer function is that of which the table is made, with the table's own weights.
@@ -105,7 +105,7 @@ fn a_struck_beam_rings_at_its_frequency_and_comes_to_rest() {
     let mut frame = 0;
     while !tree.is_still(1e-3) {
         let before = tree.angle(0).z;
-        tree.step(&beams, &steps, |_, _| BeamLoad::default());
+        tree.step(&beams, &steps, |_, _| BeamLoad::NONE);
         let after = tree.angle(0).z;
         if before < 0.0 && after >= 0.0 {
             crossings.push((f64::from(frame) + f64::from(before / (before - after))) * FRAME_S);
@@ -129,15 +129,15 @@ fn a_pulse_is_a_blow() {
     let steps = LiveSteps::new(&grid, FRAME_S).expect("time passes");
     let [mut pulsed, mut struck] = [LiveTree::new(&beams, &grid), LiveTree::new(&beams, &grid)];
     let load = Vec3A::new(3.0, 0.0, -1.0);
-    pulsed.step(&beams, &steps, |_, _| BeamLoad { steady: Vec3A::ZERO, pulse: load });
+    pulsed.step(&beams, &steps, |_, _| BeamLoad { steady: None, pulse: load });
     struck.strike(0, load * FRAME_S as f32);
     // A pulse acts in the middle of its frame.
-    struck.step(&beams, &LiveSteps::new(&grid, 0.5 * FRAME_S).expect("time passes"), |_, _| BeamLoad::default());
+    struck.step(&beams, &LiveSteps::new(&grid, 0.5 * FRAME_S).expect("time passes"), |_, _| BeamLoad::NONE);
     for _ in 0..60 {
         let (a, b) = (pulsed.angle(0), struck.angle(0));
         assert!(a.distance(b) < 2e-3 * (1.0 + a.length()), "{a} against {b}");
         for tree in [&mut pulsed, &mut struck] {
-            tree.step(&beams, &steps, |_, _| BeamLoad::default());
+            tree.step(&beams, &steps, |_, _| BeamLoad::NONE);
         }
     }
 }
