@@ -191,6 +191,7 @@ fn tree() -> Vec<BeamDynamics> {
         attach: 0.0,
         parent: NO_PARENT,
         angle_limit_rad: TIP_ANGLE_LIMIT,
+        compliance_rad_n_m: 1e-6,
         in_leaf: sway(0.001, 6.0),
         bare: sway(0.001, 6.0),
     }];
@@ -207,6 +208,7 @@ fn tree() -> Vec<BeamDynamics> {
             attach,
             parent: parent as u32,
             angle_limit_rad: TIP_ANGLE_LIMIT,
+            compliance_rad_n_m: 1e-3,
             in_leaf: sway(0.003, class),
             bare: sway(0.003, class),
         });

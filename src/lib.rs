@@ -22,6 +22,8 @@
 //!   place across the wind and each moment ([`dynamics`]). [`sway`] keeps these tables and fades between those of two winds.
 //! - **Once per species**, in the background: trees are grown and baked into models ([`tree`]). Every branch of a model
 //!   knows its frequency and its exposure to the wind. [`lod`] makes the lower levels of detail.
+//! - **When a game touches a tree**, on the CPU: its beams get oscillators of their own for as long as they move ([`sway::LiveSway`]), by
+//!   winds that a game makes ([`wind::WindSource`]), bodies ([`sway::Pusher`]) and blows ([`sway::TreeImpulse`]).
 //! - **In every frame**, on the GPU (`render`): a compute pass poses every branch of every tree in view. For each branch it
 //!   fetches one interpolated row of the table and multiplies a few numbers. The vertex shader moves vertices with their
 //!   branches. On the CPU there is work only for what changes.
@@ -31,13 +33,13 @@
 //!
 //! | room | what | knows |
 //! |---|---|---|
-//! | [`wind`] | spectra, field, gusts, [`Wind`](wind::Wind), [`WindCell`](wind::WindCell) | none |
+//! | [`wind`] | spectra, field, gusts, [`Wind`](wind::Wind), [`WindCell`](wind::WindCell), [`WindSource`](wind::WindSource) | none |
 //! | [`dynamics`] | cantilevers, load bases, response tables, poses; no ECS | none |
 //! | [`texture`] | images with mips, Fourier textures | none |
 //! | [`scatter`] | point patterns and forest plans: where plants stand | none |
 //! | [`tree`] | species, growth, meshes, [`Tree`](tree::Tree), [`Season`](tree::Season) | dynamics, texture |
 //! | [`lod`] | lower levels of detail of a baked tree: decimated meshes, impostors, envelopes | tree, texture, dynamics |
-//! | [`sway`] | how trees answer the wind: response tables, fades, articulated trees; no rendering | tree, wind, dynamics |
+//! | [`sway`] | how trees answer the wind: response tables, fades, articulated trees, trees that are touched; no rendering | tree, wind, dynamics |
 //! | `render` | how trees are drawn: prepared species, instances, LOD selection, shaders, impostors | sway, lod, tree, wind, dynamics, texture |
 //! | [`query`] | what games ask: rays, colliders, the wind among trees, [`WindListener`](query::WindListener) | sway, tree, wind, dynamics |
 //! | `export` | trees and stands as files: glTF, OBJ, impostors; no ECS | sway, lod, tree, texture, dynamics |
@@ -114,10 +116,10 @@ pub mod prelude {
         },
         grass::{GrassField, GrassGround, GrassLook, GrassPatch, GrassResponse, Sward, Tuft},
         query::{TreeColliderSettings, TreeColliders, TreeRays, WindInTrees, WindListener},
-        sway::{ActiveSway, InCanopy, SwaySettings},
+        sway::{ActiveSway, InCanopy, LiveSettings, LiveSway, Pusher, PusherShape, SwaySettings, TreeImpulse},
         terrain::{GroundLook, Terrain, TerrainFile, TerrainSettings},
         tree::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Season, Species, Tree, TreeBeams, TreeLeaves},
-        wind::{ActiveWind, Canopy, Wind, WindCell, WindClock},
+        wind::{ActiveWind, Canopy, SourceKind, Wind, WindCell, WindClock, WindSource, WindSources},
     };
 }
 
@@ -166,6 +168,8 @@ mod guide {
     struct Readme;
     #[doc = include_str!("../docs/guide/wind.md")]
     struct Wind;
+    #[doc = include_str!("../docs/guide/live.md")]
+    struct Live;
     #[doc = include_str!("../docs/guide/trees.md")]
     struct Trees;
     #[doc = include_str!("../docs/guide/forests.md")]

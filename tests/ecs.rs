@@ -4,6 +4,8 @@ use bevy::{prelude::*, time::TimeUpdateStrategy};
 use bevy_windwood::{prelude::*, tree::SpeciesModels, tree::TreeModel};
 use std::{path::Path, time::Duration};
 
+#[path = "ecs/live.rs"]
+mod live;
 #[path = "ecs/wind_changes.rs"]
 mod wind_changes;
 

@@ -18,11 +18,12 @@ use bevy::{
         storage::{GpuShaderBuffer, ShaderBuffer},
     },
     shader::Shader,
+    time::TimeUpdateStrategy,
 };
 use bevy_windwood::{
     grass::{
         blades::{Blade, layout_blades},
-        spine::{LINKS, tip_bend},
+        spine::{LINKS, push_bend, tip_bend},
     },
     prelude::*,
     render::SwayBuffers,
@@ -35,6 +36,20 @@ use support::{
 };
 
 const HALF_BEND_SPEED_M_S: f32 = 10.0;
+/// Rows of results a blade.
+const ROWS: usize = LINKS + 4;
+/// One source of each kind.
+const SOURCES: [(SourceKind, Vec3); 4] = [
+    (SourceKind::Blast { charge_kg: 20.0 }, Vec3::new(-20.0, 1.0, 8.0)),
+    (SourceKind::Downwash { rotor_radius_m: 5.0, thrust_n: 2e4, ground_m: 0.0 }, Vec3::new(20.0, 12.0, 0.0)),
+    (SourceKind::Cone { speed_m_s: 30.0, nozzle_radius_m: 1.0, half_angle_deg: 12.0 }, Vec3::new(0.0, 1.0, 10.0)),
+    (
+        SourceKind::Vortex { speed_m_s: 20.0, core_radius_m: 3.0, length_m: 30.0, spreading_m2_s: 0.2 },
+        Vec3::new(-30.0, 2.0, -9.0),
+    ),
+];
+/// The ends of a body that pushes blades, as the shader has them.
+const BODY: [Vec3; 2] = [Vec3::new(0.5, 0.4, -0.2), Vec3::new(0.1, 1.0, 0.3)];
 
 /// Time of the comparison, s: any will do.
 const TIME_S: f64 = 37.3;
@@ -42,14 +57,17 @@ const TIME_S: f64 = 37.3;
 const TABLE_HEIGHT_M: f32 = 10.0;
 
 /// A blade is three rows: root and length; azimuth, lean, droop; a wind that bends it and a place at which the wind of the tables
-/// is sampled, both as (x, z). The results are its joints and that wind.
+/// is sampled, both as (x, z). The results are its joints, that wind, what sources blow near by, and how a body turns its tip.
 const BEND_SHADER: &str = "
-import bevy_windwood::{grass::shaders::blade::{Blade, LINKS, joint_at, tip_bend}, render::shaders::wind::velocity_at};
+import bevy_windwood::{
+    grass::shaders::blade::{Blade, LINKS, joint_at, push_bend, tip_bend},
+    render::shaders::{wind::velocity_at, wind_sources::source_velocity_at},
+};
 @group(0) @binding(0) var<storage, read> blades: array<vec4<f32>>;
 @group(0) @binding(1) var<storage, read_write> results: array<vec4<f32>>;
 @compute @workgroup_size(64)
 fn bend(@builtin(global_invocation_id) id: vec3<u32>) {
-    let first = (LINKS + 2u) * id.x;
+    let first = (LINKS + 4u) * id.x;
     if first >= arrayLength(&results) {
         return;
     }
@@ -62,6 +80,9 @@ fn bend(@builtin(global_invocation_id) id: vec3<u32>) {
         results[first + link] = vec4(joint.position, 1.0);
     }
     results[first + LINKS + 1u] = vec4(velocity_at(vec3(c.z, 0.0, c.w), 0u), 1.0);
+    results[first + LINKS + 2u] = vec4(source_velocity_at(vec3(0.05 * c.z, 1.5, 0.05 * c.w), 0u), 1.0);
+    let turned = push_bend(a.xyz, a.w, vec3(0.5, 0.4, -0.2), vec3(0.1, 1.0, 0.3), 0.6, vec2(1.0, 0.0));
+    results[first + LINKS + 3u] = vec4(turned, 0.0, 1.0);
 }
 ";
 
@@ -92,6 +113,14 @@ fn wind_and_bent_blades_agree_on_gpu_and_cpu() {
     app.cleanup();
     assert!(update_until(&mut app, |world| world.resource::<ActiveSway>().is_settled()), "no wind");
     *app.world_mut().resource_mut::<WindClock>() = WindClock { time_s: TIME_S, previous_s: TIME_S };
+    for (kind, at) in SOURCES {
+        app.world_mut().spawn((WindSource::new(kind).with_reach(300.0), Transform::from_translation(at)));
+    }
+    // Sources swell for a moment, and the front of the blast is on its way.
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(110)));
+    app.update();
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
+    *app.world_mut().resource_mut::<WindClock>() = WindClock { time_s: TIME_S, previous_s: TIME_S };
     let read = install_probe(&mut app, &blades, &winds, &places);
     let mut results = Vec::new();
     for _ in 0..20 {
@@ -100,18 +129,29 @@ fn wind_and_bent_blades_agree_on_gpu_and_cpu() {
             results = rows(&bytes);
         }
     }
-    assert_eq!(results.len(), blades.len() * (LINKS + 2));
+    assert_eq!(results.len(), blades.len() * ROWS);
     assert!(results.iter().all(|row| row.w == 1.0), "every row was written");
     let active = app.world().resource::<ActiveWind>();
-    let (mut bend_error, mut wind_error) = (0.0_f32, 0.0_f32);
-    for (number, there) in results.chunks_exact(LINKS + 2).enumerate() {
+    let sources = app.world().resource::<WindSources>();
+    let (mut bend_error, mut wind_error, mut source_error, mut push_error) = (0.0_f32, 0.0_f32, 0.0_f32, 0.0_f32);
+    let (mut blown, mut pushed) = (0, 0);
+    for (number, there) in results.chunks_exact(ROWS).enumerate() {
         let (blade, place) = (&blades[number], places[number]);
         for (here, there) in blade.spine(tip_bend(winds[number], HALF_BEND_SPEED_M_S)).iter().zip(there) {
             bend_error = bend_error.max(here.distance(there.truncate()) / blade.length_m);
         }
         let sampled = active.sample(Vec3::new(place.x, TABLE_HEIGHT_M, place.y), TIME_S);
         wind_error = wind_error.max(sampled.distance(there[LINKS + 1].truncate()));
+        let added = sources.velocity(Vec3::new(0.05 * place.x, 1.5, 0.05 * place.y));
+        blown += usize::from(added.length() > 1.0);
+        let difference = added.distance(there[LINKS + 2].truncate()) / (1.0 + added.length());
+        source_error = source_error.max(difference);
+        let turned = push_bend(blade.root, blade.length_m, BODY, 0.6, Vec2::X);
+        pushed += usize::from(turned.length() > 0.1);
+        push_error = push_error.max(turned.distance(there[LINKS + 3].xy()));
     }
+    assert!(blown > 100 && source_error < 2e-3, "of {blown} places the two blow differently by {source_error}");
+    assert!(pushed > 100 && push_error < 1e-3, "{pushed} blades are pushed, differently by {push_error} rad");
     assert!(bend_error < 1e-3, "the two bend differently by {bend_error} of a blade's length");
     // The shader computes the time in 32 bits, to some 1e-4 s. Gusts change by less than this in that time.
     assert!(wind_error < 1e-2, "the two winds differ by {wind_error} m/s");
@@ -128,7 +168,7 @@ fn install_probe(app: &mut App, blades: &[Blade], winds: &[Vec2], places: &[Vec2
     let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wesl(BEND_SHADER, "bend.wesl"));
     let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
     let inputs = buffers.add(ShaderBuffer::from(inputs));
-    let results = buffers.add(ShaderBuffer::from(vec![Vec4::ZERO; blades.len() * (LINKS + 2)]));
+    let results = buffers.add(ShaderBuffer::from(vec![Vec4::ZERO; blades.len() * ROWS]));
     world.insert_resource(Probe {
         blades: inputs,
         results: results.clone(),

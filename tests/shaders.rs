@@ -50,6 +50,23 @@ fn constants_of_the_sway_are_equal_in_rust_and_wesl() {
 }
 
 #[test]
+fn constants_of_sources_and_bodies_are_equal_in_rust_and_wesl() {
+    let sources = include_str!("../src/render/shaders/wind_sources.wesl");
+    let blade = include_str!("../src/grass/shaders/blade.wesl");
+    let frame = include_str!("../src/render/shaders/frame.wesl");
+    for (code, shader, names) in [
+        (include_str!("../src/wind/source.rs"), sources, &["FADES_FROM"][..]),
+        (include_str!("../src/wind/source/blast.rs"), sources, &["SOUND_SPEED_M_S", "LEAST_SCALED_M"]),
+        (include_str!("../src/wind/source/downwash.rs"), sources, &["LAYER_SHARE"]),
+        (include_str!("../src/wind/source/vortex.rs"), sources, &["PEAK", "ENDS_FROM"]),
+        (include_str!("../src/grass/spine.rs"), blade, &["TIP_WAY", "LEAST_M"]),
+        (include_str!("../src/render/instances/rows.rs"), frame, &["MOST_SOURCES", "MOST_PUSHERS"]),
+    ] {
+        names.iter().for_each(|name| assert_eq!(value(code, name), value(shader, name), "{name}"));
+    }
+}
+
+#[test]
 fn constants_of_the_wind_in_a_stand_are_equal_in_rust_and_wesl() {
     let shader = include_str!("../src/render/shaders/stand_wind.wesl");
     let stand_wind: &[&str] = &[

@@ -5,7 +5,7 @@ use super::{
     options::SceneOptions,
     scene::Scene,
 };
-use bevy::prelude::*;
+use bevy::{prelude::*, time::TimeUpdateStrategy};
 use bevy_windwood::{grass::GrassFieldPatches, prelude::*, terrain::TerrainChunks};
 use image::RgbaImage;
 use std::time::{Duration, Instant};
@@ -34,8 +34,12 @@ pub fn render<S: Scene>(app: &mut App) -> Result<(), String> {
 
     let mut pictures = Vec::new();
     for frame in 0..series.frames {
-        let time_s = series.start + f64::from(frame) * series.interval;
-        *app.world_mut().resource_mut::<WindClock>() = WindClock { time_s, previous_s: time_s };
+        if S::RUNS && frame > 0 {
+            run(app, series.interval);
+        } else {
+            let time_s = series.start + f64::from(frame) * series.interval;
+            *app.world_mut().resource_mut::<WindClock>() = WindClock { time_s, previous_s: time_s };
+        }
         let picture = capture::capture(app, &target, image.size)?;
         if series.strip {
             pictures.push(picture);
@@ -49,6 +53,22 @@ pub fn render<S: Scene>(app: &mut App) -> Result<(), String> {
         capture::save(&strip(&pictures), &series.out.join("strip.png"))?;
     }
     Ok(())
+}
+
+/// Lets time go by, 60 frames a second, none of which is rendered.
+fn run(app: &mut App, seconds: f64) {
+    let frames = (60.0 * seconds).ceil().max(1.0);
+    let frame = Duration::from_secs_f64(seconds / frames);
+    set_cameras(app, false);
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(frame));
+    (0..frames as u32).for_each(|_| app.update());
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
+    set_cameras(app, true);
+}
+
+fn set_cameras(app: &mut App, is_active: bool) {
+    let world = app.world_mut();
+    world.query::<&mut Camera>().iter_mut(world).for_each(|mut camera| camera.is_active = is_active);
 }
 
 /// Updates until the scene is ready. Until then a [`Viewpoint`] stands in for the camera, so that nothing is rendered.

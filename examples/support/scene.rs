@@ -11,6 +11,8 @@ pub trait Scene: Resource + Sized {
     const TITLE: &'static str;
     /// Speed of the camera in the window, m/s: usual, and while Shift is held.
     const SPEEDS_M_S: [f32; 2];
+    /// Whether time has to run from one picture to the next, since something moves that is no function of it.
+    const RUNS: bool = false;
 
     fn options(&self) -> &SceneOptions;
 

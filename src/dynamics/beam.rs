@@ -33,6 +33,8 @@ pub struct BeamDynamics {
     /// Angle that its tip approaches in an ever stronger wind, in radians: [`TIP_ANGLE_LIMIT`](super::TIP_ANGLE_LIMIT) for a
     /// branch of one beam; beams that continue one another share it, by how far they bend.
     pub angle_limit_rad: f32,
+    /// Turn of its tip under a moment that bends it along its whole length, of a stem with its roots, rad/(N m).
+    pub compliance_rad_n_m: f32,
     /// While the tree is in leaf.
     pub in_leaf: BeamSway,
     /// While it is bare. Evergreens never are.

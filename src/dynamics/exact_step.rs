@@ -1,7 +1,7 @@
 //! One step of a damped oscillator, without error: for oscillators that run live.
 //!
 //! The motion of whole trees is periodic and comes from the table of `response`. What is not periodic (gusts that a game
-//! makes, pushes, impacts) takes live oscillators, for the few trees that are touched. They obey (21), with `p` the load by
+//! makes, pushes, impacts) takes live oscillators, for the few trees that are touched (`live`). They obey (21), with `p` the load by
 //! mass:
 //!
 //! ```text

@@ -77,7 +77,7 @@ impl LoadBasis {
     }
 
     /// The basis signals' moving part for one velocity, m/s in wind coordinates.
-    pub(crate) fn signals(&self, velocity: Vec3) -> Vec4 {
+    pub fn signals(&self, velocity: Vec3) -> Vec4 {
         (self.signals)(velocity)
     }
 

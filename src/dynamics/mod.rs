@@ -13,8 +13,8 @@
 //!    oscillators.
 //! 5. `pose`: a tree's bent beams, each attached to its parent, from the table.
 //! 6. `leaf`: leaves that turn into the wind and flutter (26).
-//! 7. `exact_step`: one oscillator, step by step, for motion that is not periodic. Later versions use it for trees that a
-//!    game pushes.
+//! 7. `exact_step`: one oscillator, step by step, for motion that is not periodic. `live`: trees that a game touches move by it, beside
+//!    the table.
 //!
 //! Steps 1 to 3 happen once for a wind, step 4 once for a tree in a wind, steps 5 and 6 in every frame. Since (21) is linear, a branch costs a few
 //! multiplications, whatever its frequency and its place in the tree. The closed forms that all this is checked against
@@ -29,6 +29,7 @@ pub(crate) mod direction_map;
 mod exact_step;
 pub(crate) mod frequency_classes;
 pub(crate) mod leaf;
+pub(crate) mod live;
 pub(crate) mod load_basis;
 pub(crate) mod mean_wind;
 #[cfg(test)]
@@ -46,6 +47,7 @@ pub use direction_map::{DirectionMap, LoadCoefficients};
 pub use exact_step::{ExactStep, OscillatorState};
 pub use frequency_classes::FrequencyClasses;
 pub use leaf::{LeafResponse, RestingLeaf};
+pub use live::{BeamLoad, Capsule, Contacts, LiveBeam, LiveSteps, LiveTree, strike};
 pub use load_basis::{LoadBasis, LoadBasisKind};
 pub use mean_wind::MeanWind;
 pub use oscillator_grid::{OscillatorGrid, RowWeights};

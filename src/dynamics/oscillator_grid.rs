@@ -177,7 +177,8 @@ impl OscillatorGrid {
         [middle, middle * middle - of_low / square, 1.0 / square].map(|coefficient| coefficient as f32)
     }
 
-    fn damped_share(&self, damping_ratio: f32) -> f32 {
+    /// The weight of the greater damping ratio for a beam's own.
+    pub(crate) fn damped_share(&self, damping_ratio: f32) -> f32 {
         let [low, high] = self.damping_ratios;
         let [a, b, c] = self.damping_mix();
         let ratio = if damping_ratio > low { damping_ratio.min(high) } else { low };
@@ -185,7 +186,7 @@ impl OscillatorGrid {
     }
 
     /// Admittance of the rows of a class and a size, at the bins of a period from 0 up. Of the first fast class: that of the low band.
-    pub(crate) fn admittances(&self, class: usize, size: usize, bin_hz: f64) -> impl Iterator<Item = f64> + use<> {
+    pub fn admittances(&self, class: usize, size: usize, bin_hz: f64) -> impl Iterator<Item = f64> + use<> {
         let step = reduced_size(size) * bin_hz / self.class_hz(class);
         let decay = f64::from(self.decay);
         (0..).map(move |bin| admittance(f64::from(bin) * step, decay))

@@ -16,9 +16,13 @@
 //!
 //! with `h` the slope of a uniform cantilever under a uniform load: E I w'' = q (l - x)^2 / 2. Link `k` of `n` points
 //! along a(s) at its middle, so the joints are the sums of unit vectors times l / n.
+//!
+//! A body that pushes blades aside turns those that would stand in it. Where it is nearest to an upright blade, that has to make way by
+//! `w`, horizontally and away from the body's middle: at once, and it comes back at once. Such a blade turns by `w` over the 3/4 of
+//! its length by which a tip moves for each radian, up to the limit of all leaning.
 
 use super::blades::Blade;
-use bevy::math::{Vec2, Vec3};
+use bevy::math::{Vec2, Vec3, Vec3Swizzles};
 
 /// Links of a blade: the least number that looks bent.
 pub const LINKS: usize = 3;
@@ -34,6 +38,30 @@ pub fn tip_bend(velocity: Vec2, half_bend_speed_m_s: f32) -> Vec2 {
     let load = share * share.length();
     load * (TIP_ANGLE_LIMIT_RAD / (1.0 + load.length_squared()).sqrt())
 }
+
+/// The vector by which a body, a ball of `radius_m` that is moved along the line between two ends, turns the tip of an upright blade, rad.
+/// A blade right under its middle leans along `fallback`.
+pub fn push_bend(root: Vec3, length_m: f32, ends: [Vec3; 2], radius_m: f32, fallback: Vec2) -> Vec2 {
+    let middle = root + Vec3::Y * (0.5 * length_m);
+    let line = ends[1] - ends[0];
+    let share = ((middle - ends[0]).dot(line) / line.length_squared().max(LEAST_M)).clamp(0.0, 1.0);
+    let centre = ends[0] + line * share;
+    let rise = centre.y - root.y;
+    // How far the centre is above the tip or below the root.
+    let off_m = rise - rise.max(0.0).min(length_m);
+    let away = root.xz() - centre.xz();
+    let way_m = (radius_m * radius_m - off_m * off_m).max(0.0).sqrt() - away.length();
+    if way_m.is_nan() || way_m <= 0.0 {
+        return Vec2::ZERO;
+    }
+    let direction = if away.length_squared() > LEAST_M { away.normalize() } else { fallback };
+    direction * (way_m / (TIP_WAY * length_m)).min(ANGLE_LIMIT_RAD)
+}
+
+/// Lengths by which a tip moves for each radian that it turns.
+const TIP_WAY: f32 = 0.75;
+/// Shorter than this, m (or m^2), is nothing.
+const LEAST_M: f32 = 1e-6;
 
 impl Blade {
     /// The angle vector at the share `s` of its length, rad, with the tip bent by `tip`.
@@ -126,6 +154,24 @@ mod tests {
         let tip = blade.spine(Vec2::X * 0.01)[LINKS];
         // Three links sum the slope by the midpoint rule, whose error is h^2/24 times the change of h', 3: 0.014.
         assert!((tip.x / 0.01 - 0.75).abs() < 0.015, "{tip}");
+    }
+
+    #[test]
+    fn upright_blades_make_way_for_a_body() {
+        let ends = [Vec3::new(0.0, 0.3, 0.0), Vec3::new(0.0, 1.5, 0.0)];
+        let bend = |x: f32, y: f32| push_bend(Vec3::new(x, y, 0.0), 0.5, ends, 0.3, Vec2::Y);
+        // Half a radius in, a tip of 0.375 m a radian has to go 0.15 m.
+        assert!(
+            (bend(0.15, 0.0) - Vec2::X * 0.4).length() < 1e-5 && (bend(-0.15, 0.0) + Vec2::X * 0.4).length() < 1e-5
+        );
+        assert_eq!(bend(0.31, 0.0), Vec2::ZERO);
+        assert_eq!(bend(0.1, -1.2), Vec2::ZERO, "a body far above bends nothing");
+        assert!(bend(0.0, 0.0).y > 0.7 && bend(0.0, 0.0).length() <= ANGLE_LIMIT_RAD);
+        // The nearer to the middle, the further; no step at the rim.
+        let bends: Vec<f32> = (0..=300).map(|step| bend(step as f32 * 1e-3 + 1e-2, 0.0).length()).collect();
+        assert!(bends.windows(2).all(|pair| pair[1] <= pair[0] && pair[0] - pair[1] < 0.01));
+        let odd = [f32::NAN, f32::INFINITY, 0.0];
+        assert!(odd.iter().all(|x| !push_bend(Vec3::splat(*x), *x, [Vec3::ZERO; 2], 0.3, Vec2::X).is_nan()));
     }
 
     #[test]

@@ -27,7 +27,7 @@ pub struct RenderCapabilities {
     pub max_table_bytes: u64,
 }
 
-/// Storage buffers that a shader stage needs: seven for the pose pass; to draw, our four and Bevy's own for meshes, instances and
+/// Storage buffers that a shader stage needs: eight for the pose pass; to draw, our four and Bevy's own for meshes, instances and
 /// skins.
 const STORAGE_BUFFERS_NEEDED: u32 = 8;
 

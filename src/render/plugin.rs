@@ -5,13 +5,14 @@ use super::{
     capabilities::RenderCapabilities,
     draw::{
         bare::redraw_bare_trees,
-        bounds::fit_tree_bounds,
+        bounds::{fit_live_bounds, fit_tree_bounds},
         components::DrawnTree,
         layers::copy_render_layers,
         mesh_entities::update_tree_meshes,
         removal::{LostMeshes, note_lost_mesh, remove_tree_meshes, restore_lost_meshes},
     },
     gpu::{
+        live_upload::{LiveUploads, upload_live_trees},
         pose_pass::{self, PoseDispatch},
         upload::{PackedWind, UploadState, pack_incoming_wind, upload_frame, upload_winds},
     },
@@ -76,6 +77,7 @@ impl Plugin for TreeRenderPlugin {
             .init_resource::<SwayBuffers>()
             .init_resource::<UploadState>()
             .init_resource::<PackedWind>()
+            .init_resource::<LiveUploads>()
             .init_resource::<PoseDispatch>()
             .add_message::<SpeciesPrepared>()
             .add_message::<VariantRemoved>()
@@ -94,6 +96,7 @@ impl Plugin for TreeRenderPlugin {
         let draw = timed!(
             app,
             fit_tree_bounds,
+            fit_live_bounds,
             remove_models,
             assign_instances,
             apply_level_of_detail,
@@ -105,7 +108,7 @@ impl Plugin for TreeRenderPlugin {
             copy_render_layers
         );
         let pack = timed!(app, pack_incoming_wind);
-        let upload = timed!(app, upload_winds, write_tree_rows, update_posed_trees, upload_frame);
+        let upload = timed!(app, upload_winds, write_tree_rows, update_posed_trees, upload_live_trees, upload_frame);
         let light =
             (find_lights, update_material_lights::<SwayExtension>.run_if(resource_changed::<TreeLights>)).chain();
         let can_draw = resource_exists::<RenderCapabilities>;

@@ -23,6 +23,7 @@ pub(crate) fn load_shaders(app: &mut App) {
     load_shader_library!(app, "shaders/view_direction.wesl");
     load_shader_library!(app, "shaders/stand_wind.wesl");
     load_shader_library!(app, "shaders/wind.wesl");
+    load_shader_library!(app, "shaders/wind_sources.wesl");
     embedded_asset!(app, "shaders/impostor_fragment.wesl");
     embedded_asset!(app, "shaders/impostor_prepass.wesl");
     embedded_asset!(app, "shaders/impostor_vertex.wesl");

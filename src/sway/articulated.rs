@@ -1,14 +1,16 @@
-//! Trees whose beams and leaves are entities that follow the wind, on the CPU.
+//! Trees that are posed on the CPU: those whose beams and leaves are entities that follow the wind, and those that a body pushes.
 
 use super::{
     active::{ActiveSway, FLUTTER_PERIOD_S, WeightedResponse, leaf_clock_s},
     components::InCanopy,
+    live::LiveSway,
+    stands::{stands_at, uniform_scale, wind_at_tree, world_from_local},
 };
 use crate::{
     dynamics::{
         RestingLeaf,
         pose::{BeamPose, TreeInWind, TreePoser},
-        stand_wind::{LOW_SHARE, StandWind, WindAtTree},
+        stand_wind::{StandWind, WindAtTree},
     },
     tree::{
         Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Season, SpeciesModels, Tree, TreeBeams, TreeLeaves, TreeModel,
@@ -17,7 +19,7 @@ use crate::{
 };
 use bevy::{math::Vec3A, prelude::*};
 
-/// The pose of an articulated tree this frame, beam by beam, in the order of its skeleton.
+/// The pose of a tree this frame, beam by beam, in the order of its skeleton: of one that is articulated, or that a body pushes.
 #[derive(Component, Default)]
 pub struct TreePose {
     beams: Vec<BeamPose>,
@@ -71,21 +73,26 @@ pub(super) fn articulate_trees(
     }
 }
 
-/// Poses every articulated tree, tree by tree in parallel.
+/// Poses every such tree, tree by tree in parallel.
 pub(super) fn pose_trees(
     sway: Res<ActiveSway>,
     clock: Res<WindClock>,
     season: Res<Season>,
     models: Res<Assets<TreeModel>>,
-    mut trees: Query<(&Tree, &Grown, (&Transform, &GlobalTransform, Has<ChildOf>), Option<&InCanopy>, &mut TreePose)>,
+    mut trees: Query<(
+        (&Tree, &Grown, Option<&InCanopy>),
+        (&Transform, &GlobalTransform, Has<ChildOf>),
+        Option<&LiveSway>,
+        &mut TreePose,
+    )>,
 ) {
-    trees.par_iter_mut().for_each(|(of, grown, (transform, global, is_child), canopy, mut tree)| {
+    trees.par_iter_mut().for_each(|((of, grown, canopy), (transform, global, is_child), live, mut tree)| {
         let Some(model) = models.get(&grown.model) else { return };
-        let stands = if is_child { *global } else { GlobalTransform::from(*transform) };
+        let stands = stands_at(transform, global, is_child);
         let leaf_share = model.leaf_season.share(season.wrapped() + of.season_shift());
         let canopy = canopy.copied().unwrap_or_default().0;
         tree.refresh(&sway, grown.model.id(), model, stands, leaf_share, canopy);
-        tree.follow(&sway, clock.time_s, model.height_m(), stands);
+        tree.follow(&sway, clock.time_s, model.height_m(), stands, live);
     });
 }
 
@@ -116,7 +123,14 @@ impl TreePose {
         self.made_for = Some(key);
     }
 
-    fn follow(&mut self, sway: &ActiveSway, time_s: f64, height_m: f32, stands: GlobalTransform) {
+    fn follow(
+        &mut self,
+        sway: &ActiveSway,
+        time_s: f64,
+        height_m: f32,
+        stands: GlobalTransform,
+        live: Option<&LiveSway>,
+    ) {
         let local_from_world = world_from_local(&stands).transpose();
         let height_m = height_m * uniform_scale(&stands);
         self.wind = WindAtTree::default();
@@ -128,27 +142,17 @@ impl TreePose {
             response.table.responses(&place, poser.rows(), &mut self.responses);
             poser.add_free_angles(&self.responses, weight, &mut self.free_angles);
             let Some(stand) = stand else { continue };
-            let velocity = response.table.velocity(&place);
-            let wind_at = |height_m: f32| {
-                let velocity = response.field.frame().to_world(stand.velocity(height_m, velocity));
-                weight * (local_from_world * velocity)
-            };
-            self.wind.high += wind_at(height_m);
-            self.wind.low += wind_at(LOW_SHARE * height_m);
+            let wind = wind_at_tree(response, stand, &place, height_m);
+            self.wind.high += weight * (local_from_world * wind.high);
+            self.wind.low += weight * (local_from_world * wind.low);
+        }
+        if let Some(live) = live {
+            self.free_angles.iter_mut().zip(live.angles()).for_each(|(free, added)| *free += added);
+            self.wind.high += live.wind().high;
+            self.wind.low += live.wind().low;
         }
         self.posers[0].pose_free(&self.free_angles, &mut self.beams);
     }
-}
-
-/// The uniform scale nearest to that of a tree, without its sign.
-pub(crate) fn uniform_scale(stands: &GlobalTransform) -> f32 {
-    stands.affine().matrix3.determinant().abs().cbrt()
-}
-
-/// The rotation of a tree, after a mirror image along x if it is mirrored.
-pub(crate) fn world_from_local(stands: &GlobalTransform) -> Mat3 {
-    let (scale, rotation, _) = stands.to_scale_rotation_translation();
-    Mat3::from_quat(rotation) * Mat3::from_diagonal(Vec3::new(scale.x.signum(), 1.0, 1.0))
 }
 
 /// Moves beam entities to where their cross-sections are.

@@ -1,6 +1,6 @@
 //! Entities that are given the wind at their place.
 
-use super::ecs::{active::ActiveWind, clock::WindClock};
+use super::ecs::{active::ActiveWind, clock::WindClock, sources::WindSources};
 use bevy::prelude::*;
 
 /// Samples the wind: each frame `velocity` is the wind at this entity's place.
@@ -12,7 +12,7 @@ use bevy::prelude::*;
 pub struct WindCell {
     /// World height of the ground below, m. The wind grows with the height above it.
     pub ground_m: f32,
-    /// The wind here, m/s in world axes: mean and turbulence. Written in
+    /// The wind here, m/s in world axes: mean, turbulence and what [`WindSource`](super::WindSource)s blow. Written in
     /// [`WindwoodSystems::AdvanceWind`](crate::schedule::WindwoodSystems::AdvanceWind).
     pub velocity: Vec3,
 }
@@ -30,6 +30,7 @@ impl WindCell {
 /// propagation.
 pub(super) fn sample_wind_cells(
     wind: Res<ActiveWind>,
+    sources: Res<WindSources>,
     clock: Res<WindClock>,
     mut cells: Query<(&mut WindCell, &Transform, Option<&GlobalTransform>, Has<ChildOf>)>,
 ) {
@@ -39,7 +40,7 @@ pub(super) fn sample_wind_cells(
             _ => transform.translation,
         };
         let above_ground = place - Vec3::Y * cell.ground_m;
-        let velocity = wind.sample(above_ground, clock.time_s);
+        let velocity = wind.sample(above_ground, clock.time_s) + sources.velocity(place);
         cell.set_if_neq(WindCell { velocity, ..*cell });
     });
 }

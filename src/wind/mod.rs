@@ -14,12 +14,14 @@
 //!    [`WindField::fast_gusts`].
 //! 7. [`cross_flow_pressure`] is the load of that velocity on a slender body (equation 15).
 //! 8. Between trees the wind is weaker and gustier: [`Canopy`].
+//! 9. What a game blows is added: [`WindSource`], with the flows of `source`.
 //!
 //! # Files
 //! - Plain arithmetic without an app: `settings`, `frame`, `profile`, `spectrum`, `level_spectrum`, `coherence`,
 //!   `factorisation`, `synthesis`, `interpolation`, `lateral`, `fast_gusts`, `field`, `pressure`, `canopy`,
-//!   `cross_fade`.
-//! - For an app: `ecs/clock` ([`WindClock`]), `ecs/active` ([`Wind`], [`ActiveWind`]), `components` ([`WindCell`]),
+//!   `cross_fade`, `source`.
+//! - For an app: `ecs/clock` ([`WindClock`]), `ecs/active` ([`Wind`], [`ActiveWind`]), `ecs/sources` ([`WindSources`]), `components`
+//!   ([`WindCell`], [`WindSource`]),
 //!   `gizmos`, `plugin`.
 //!
 //! # Wind coordinates
@@ -45,6 +47,7 @@ mod plugin;
 mod pressure;
 mod profile;
 mod settings;
+mod source;
 mod spectrum;
 mod synthesis;
 
@@ -56,6 +59,7 @@ pub(crate) use ecs::active::NumberedWind;
 pub use ecs::{
     active::{ActiveWind, Wind},
     clock::WindClock,
+    sources::{WindSource, WindSources},
 };
 pub use fast_gusts::GustBands;
 pub use field::WindField;
@@ -67,4 +71,6 @@ pub use pressure::cross_flow_pressure;
 pub use profile::LogProfile;
 pub(crate) use profile::VON_KARMAN;
 pub use settings::{FieldResolution, FieldSettings, TurbulenceBand};
+pub(crate) use source::SourceFlow;
+pub use source::SourceKind;
 pub use spectrum::{CoherenceDecay, DecayCoefficients};

@@ -5,6 +5,7 @@ use super::{
     ecs::{
         active::{ActiveWind, Wind, fade_fields, finish_field_build, start_field_build},
         clock::{WindClock, advance_clock, note_jumps},
+        sources::{WindSource, WindSources, advance_sources},
     },
 };
 use crate::{
@@ -14,7 +15,7 @@ use crate::{
 };
 use bevy::prelude::*;
 
-/// The wind, without trees: [`Wind`], [`WindClock`], [`ActiveWind`] and [`WindCell`]s.
+/// The wind, without trees: [`Wind`], [`WindClock`], [`ActiveWind`], [`WindSource`]s and [`WindCell`]s.
 ///
 /// It needs the task pools and the time of Bevy's `MinimalPlugins`.
 pub struct WindPlugin;
@@ -25,11 +26,21 @@ impl Plugin for WindPlugin {
         configure_sets(app);
         app.register_type::<Wind>()
             .register_type::<WindCell>()
+            .register_type::<WindSource>()
             .register_type::<WindClock>()
             .init_resource::<Wind>()
             .init_resource::<WindClock>()
-            .init_resource::<ActiveWind>();
-        let advance = timed!(app, advance_clock, start_field_build, finish_field_build, fade_fields, sample_wind_cells);
+            .init_resource::<ActiveWind>()
+            .init_resource::<WindSources>();
+        let advance = timed!(
+            app,
+            advance_clock,
+            start_field_build,
+            finish_field_build,
+            fade_fields,
+            advance_sources,
+            sample_wind_cells
+        );
         let jumps = timed!(app, note_jumps);
         app.add_systems(PreUpdate, advance.chain().in_set(WindwoodSystems::AdvanceWind))
             .add_systems(PostUpdate, jumps.before(WindwoodSystems::Pose));

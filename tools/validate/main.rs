@@ -21,6 +21,7 @@ mod frame;
 mod grid;
 mod leaves;
 mod levels;
+mod live;
 mod memory;
 #[path = "../../src/dynamics/oracle/oscillator.rs"]
 #[expect(dead_code, reason = "a part of it is for the unit tests")]
@@ -65,6 +66,8 @@ enum Topic {
     Extremes,
     /// Vertices posed on the GPU against the same on the CPU.
     Parity,
+    /// Trees that a game touches: against the table, and what they cost.
+    Live,
     /// How far a small change of wind or branch turns a leaf, and leaves on the GPU against the same on the CPU.
     Leaves,
     /// Random ground against its covariance models, and the round trip from ground to fitted model.
@@ -128,6 +131,7 @@ fn main() -> ExitCode {
         Topic::Canopy => canopy::run(),
         Topic::Extremes => extremes::run(),
         Topic::Parity => parity::run(),
+        Topic::Live => live::run(),
         Topic::Leaves => leaves::run(),
         Topic::Terrain => terrain::run(),
         Topic::Points => points::run(),

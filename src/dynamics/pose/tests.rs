@@ -28,6 +28,7 @@ const BEAM: BeamDynamics = BeamDynamics {
     attach: 0.0,
     parent: NO_PARENT,
     angle_limit_rad: TIP_ANGLE_LIMIT,
+    compliance_rad_n_m: 1e-6,
     in_leaf: sway(0.004, 7.0),
     bare: sway(0.006, 8.0),
 };
@@ -50,6 +51,7 @@ fn hierarchy() -> [BeamDynamics; 3] {
         attach: 0.5,
         parent: 1,
         angle_limit_rad: TIP_ANGLE_LIMIT,
+        compliance_rad_n_m: 1e-3,
         in_leaf: sway(0.02, 20.0),
         bare: sway(0.02, 20.0),
     };

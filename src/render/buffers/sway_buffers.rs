@@ -2,8 +2,10 @@
 
 use bevy::{asset::RenderAssetUsages, prelude::*, render::storage::ShaderBuffer};
 
-/// Size of a buffer before its first upload, bytes. The frame's values fit in it.
-pub(crate) const FIRST_BYTES: u64 = 256;
+/// Size of a buffer before its first upload, bytes.
+const FIRST_BYTES: u64 = 256;
+/// Size of the values of a frame, bytes.
+pub(crate) const FRAME_BYTES: u64 = 2800;
 
 /// The tables of all trees that sway and of the wind, for shaders of your own.
 ///
@@ -29,8 +31,9 @@ pub struct SwayBuffers {
 impl FromWorld for SwayBuffers {
     fn from_world(world: &mut World) -> Self {
         let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
+        let frame = buffers.add(ShaderBuffer::with_size(FRAME_BYTES, RenderAssetUsages::RENDER_WORLD));
         let mut empty = || empty_buffer(&mut buffers);
-        Self { poses: empty(), beams: empty(), trees: empty(), frame: empty(), winds: [empty(), empty()] }
+        Self { poses: empty(), beams: empty(), trees: empty(), frame, winds: [empty(), empty()] }
     }
 }
 

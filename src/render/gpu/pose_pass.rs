@@ -60,6 +60,8 @@ pub(crate) struct PoseBuffers {
     pub shared: SwayBuffers,
     /// `array<u32>`, one entry a workgroup.
     pub workgroups: Handle<ShaderBuffer>,
+    /// `array<vec4<f32>>`: see [`LiveUploads`](super::live_upload::LiveUploads).
+    pub live: Handle<ShaderBuffer>,
 }
 
 pub(crate) fn plugin(app: &mut App) {
@@ -100,6 +102,7 @@ fn queue_pipelines(mut commands: Commands, assets: Res<AssetServer>, cache: Res<
                 (104, table()),
                 (105, table()),
                 (106, table()),
+                (109, table()),
             ),
         ),
     );
@@ -135,7 +138,7 @@ fn bind_tables(
 ) {
     commands.remove_resource::<PoseBindings>();
     let (Some(dispatch), Some(pipelines)) = (dispatch, pipelines) else { return };
-    let PoseBuffers { shared, workgroups } = &dispatch.buffers;
+    let PoseBuffers { shared, workgroups, live } = &dispatch.buffers;
     let [wind_a, wind_b] = &shared.winds;
     let buffer = |handle| Some(buffers.get(handle)?.buffer.as_entire_buffer_binding());
     let entries = || {
@@ -147,6 +150,7 @@ fn bind_tables(
             (104, buffer(workgroups)?),
             (105, buffer(wind_a)?),
             (106, buffer(wind_b)?),
+            (109, buffer(live)?),
         )))
     };
     let Some(entries) = entries() else { return };

@@ -1,26 +1,30 @@
 //! Uploads what changed: the values of the frame, the tables of a wind when a new one begins, and the rows of those trees that come, go,
 //! move, or become visible or hidden.
 
-use super::pose_pass::{PoseBuffers, PoseDispatch};
+use super::{
+    frame_bodies::write_bodies,
+    live_upload::LiveUploads,
+    pose_pass::{PoseBuffers, PoseDispatch},
+};
 use crate::{
     background::drop_in_background,
     render::{
         buffers::{
             dirty_table::with_reserve,
-            sway_buffers::{FIRST_BYTES, SwayBuffers, empty_buffer},
+            sway_buffers::{FRAME_BYTES, SwayBuffers, empty_buffer},
             table_uploads::TableUploads,
         },
         capabilities::RenderCapabilities,
         gpu::wind_table::pack_wind,
         instances::{
-            rows::{FrameRow, MAX_VIEWERS, POSE_BYTES},
+            rows::{FrameRow, POSE_BYTES},
             tables::InstanceTables,
         },
         lod::{thresholds::HEIGHT_TOLERANCE, viewers::LodViewers},
     },
-    sway::{ActiveSway, WindResponse, leaf_clock_s, wrapped_time_s},
+    sway::{ActiveSway, Pushers, WindResponse, leaf_clock_s, wrapped_time_s},
     tree::Season,
-    wind::WindClock,
+    wind::{WindClock, WindSources},
 };
 use bevy::{
     asset::RenderAssetUsages,
@@ -64,7 +68,8 @@ impl FromWorld for PoseDispatch {
     fn from_world(world: &mut World) -> Self {
         let workgroups = world.resource::<UploadState>().workgroups.clone();
         let shared = world.resource::<SwayBuffers>().clone();
-        Self { buffers: PoseBuffers { shared, workgroups }, workgroups: 0, is_previous_due: true }
+        let live = world.resource::<LiveUploads>().buffer.clone();
+        Self { buffers: PoseBuffers { shared, workgroups, live }, workgroups: 0, is_previous_due: true }
     }
 }
 
@@ -162,6 +167,7 @@ pub(crate) fn upload_frame(
     clock: Res<WindClock>,
     season: Res<Season>,
     viewers: Res<LodViewers>,
+    (sources, pushers, live): (Res<WindSources>, Res<Pushers>, Res<LiveUploads>),
     mut tables: ResMut<InstanceTables>,
     mut uploads: Uploads,
     mut dispatch: ResMut<PoseDispatch>,
@@ -181,8 +187,10 @@ pub(crate) fn upload_frame(
     dispatch.workgroups = tables.workgroups.table.len();
     dispatch.is_previous_due = has_new_rows || state.posed != Some((clock.previous_s, previous_blend));
     state.posed = Some((clock.time_s, blend));
-    let row = frame_row(&sway, &clock, &season, &viewers, state, dispatch.workgroups);
-    uploads.tables.writes.write(&shared.frame, FIRST_BYTES, 0, bytemuck::bytes_of(&row));
+    let mut row = frame_row(&sway, &clock, &season, &viewers, state, dispatch.workgroups);
+    [row.live_now, row.live_before] = live.halves();
+    write_bodies(&mut row, &sources, &pushers, |place| viewers.distance(place).m);
+    uploads.tables.writes.write(&shared.frame, FRAME_BYTES, 0, bytemuck::bytes_of(&row));
 }
 
 fn frame_row(
@@ -213,7 +221,7 @@ fn frame_row(
         height_tolerance: HEIGHT_TOLERANCE,
         viewer_count: 0,
         shadow_end: viewers.thresholds.shadow_end,
-        viewers: [[0.0; 4]; MAX_VIEWERS],
+        ..FrameRow::default()
     };
     for (place, viewer) in row.viewers.iter_mut().zip(viewers.iter()) {
         *place = viewer.eye.extend(viewer.factor()).to_array();

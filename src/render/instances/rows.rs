@@ -80,9 +80,33 @@ pub(crate) struct FrameRow {
     pub viewer_count: u32,
     /// From here on impostors cast the shadows of trees in a sun's maps, per metre of their height.
     pub shadow_end: f32,
+    /// First row of this frame's half of what is added to trees that are awake, and of the last frame's.
+    pub live_now: u32,
+    pub live_before: u32,
+    /// Of `sources` and of `pushers`, those that are set: now and one frame ago.
+    pub source_counts: [u32; 2],
+    pub pusher_counts: [u32; 2],
+    pub padding: [u32; 2],
     /// The cameras: place, and the factor of [`LodViewer::factor`](crate::render::lod::viewers::LodViewer::factor).
     pub viewers: [[f32; 4]; MAX_VIEWERS],
+    /// What a game blows and pushes: rows of now, then those of one frame ago.
+    pub sources: [SourceRow; 2 * MOST_SOURCES],
+    pub pushers: [PusherRow; 2 * MOST_PUSHERS],
 }
+
+/// `SourceRow` of the shader: a [`SourceFlow`](crate::wind::SourceFlow).
+#[repr(transparent)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct SourceRow(pub [[f32; 4]; 3]);
+
+/// `PusherRow` of the shader: both ends of a capsule, each with its radius.
+#[repr(transparent)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct PusherRow(pub [[f32; 4]; 2]);
+
+/// Sources and pushers that grass and fires feel at once.
+pub(crate) const MOST_SOURCES: usize = 16;
+pub(crate) const MOST_PUSHERS: usize = 16;
 
 /// `TreeRow` of the shader: one tree. A row without beams is unused, or that of a tree without poses, which stands at rest.
 #[repr(C)]
@@ -102,7 +126,8 @@ pub(crate) struct TreeRow {
     /// A [`PackedCanopy`].
     pub canopy_profile: u32,
     pub canopy_exposure: u32,
-    pub padding: u32,
+    /// One more than the first of its rows among those of trees that are awake; 0 for a tree that sleeps.
+    pub live: u32,
 }
 
 /// Farther than anything, m.
@@ -138,11 +163,12 @@ pub(crate) const MAX_VIEWERS: usize = 8;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::buffers::sway_buffers::FRAME_BYTES;
 
     #[test]
     fn rows_have_the_sizes_of_the_shader() {
         assert_eq!(size_of::<BeamRow>(), 96);
-        assert_eq!(size_of::<FrameRow>(), 208);
+        assert_eq!(size_of::<FrameRow>() as u64, FRAME_BYTES);
         assert_eq!(size_of::<TreeRow>(), 64);
     }
 

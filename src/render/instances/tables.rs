@@ -154,6 +154,18 @@ impl InstanceTables {
         }
     }
 
+    /// Beams of a row's tree, whether it is posed or not.
+    pub fn beams_of(&self, row: u32) -> u32 {
+        self.rows.get(row as usize).map_or(0, |state| state.beams)
+    }
+
+    /// Writes where the rows of a tree are that is awake, or that it sleeps.
+    pub fn write_live(&mut self, row: u32, first: Option<u32>) {
+        if let Some(tree) = self.trees.get_mut(row) {
+            tree.live = first.map_or(0, |first| first + 1);
+        }
+    }
+
     /// Poses a tree from now on, as long as there are poses, or no longer.
     pub fn set_visible(&mut self, row: u32, is_visible: bool) {
         let Some(state) = self.rows.get_mut(row as usize) else { return };

@@ -9,7 +9,10 @@
 //! for 1 N m and stands where that has its centre, `(q + 2) / (2 (1 + q + q^2))` of the way: so it turns the end of the length
 //! and moves it exactly as a taper does under a constant moment. It twists by `E / 2 G` as much. A stem stands on one more hinge, that of its roots.
 
-use crate::tree::{skeleton::Skeleton, species::Species};
+use crate::tree::{
+    skeleton::{Skeleton, SkeletonBeam},
+    species::Species,
+};
 use bevy::math::{DMat3, DVec3};
 use std::f64::consts::PI;
 
@@ -27,6 +30,8 @@ const SOIL_SHEAR_PA: f64 = 1.0e6;
 const SOIL_POISSON: f64 = 0.4;
 /// Thinner wood counts as so thick, m: nothing that is drawn is thinner.
 const LEAST_RADIUS_M: f64 = 1e-4;
+/// Twigs that end in a point are taken as cut off at this share of their radius, where a force takes hold of them.
+const LEAST_TAPER: f64 = 0.15;
 /// Hinges of a beam of a branch that bears others, for its bend: within 1% for the cones in which stems end.
 const BENDING_HINGES: usize = 12;
 /// The same for its sway, of the whole branch, and of each beam at least.
@@ -115,6 +120,19 @@ fn hinges(species: &Species, skeleton: &Skeleton, beams: &[u32], count: usize) -
         before_m += f64::from(beam.length_m);
     }
     hinges
+}
+
+/// The even compliance by which a force at a beam's tip turns that as it turns the taper, 1/(N m): of a cone that ends with the share
+/// `q` of its radius `R` it is `L (1 + 2q) / (3 q^2 E I)`, from `int (1 - u) / (1 - (1 - q) u)^4 du = (1 + 2q) / (6 q^2)`. A stem's has that
+/// of its roots.
+pub(super) fn beam_compliance(species: &Species, beam: &SkeletonBeam) -> f64 {
+    let young_pa = f64::from(species.wood.young_modulus_pa);
+    let [base_m, tip_m] = [beam.base_radius_m, beam.tip_radius_m]
+        .map(|radius_m| ((1.0 - BARK_SHARE) * f64::from(radius_m)).max(LEAST_RADIUS_M));
+    let taper = (tip_m / base_m).clamp(LEAST_TAPER, 1.0);
+    let stiffness_nm2 = young_pa * PI / 4.0 * base_m.powi(4);
+    let wood = f64::from(beam.length_m) * (1.0 + 2.0 * taper) / (3.0 * taper * taper * stiffness_nm2);
+    if beam.parent.is_none() { wood + 1.0 / root_stiffness_nm_rad(f64::from(beam.base_radius_m)) } else { wood }
 }
 
 /// The hinge of a stem's roots. They do not let it twist, which the wood does far more.

@@ -56,7 +56,7 @@ const BREAST_HEIGHT_M: f32 = 1.3;
 
 /// The beams of `skeleton` as rows for posing, in the same order.
 pub(super) fn beam_dynamics(species: &Species, skeleton: &Skeleton) -> Vec<BeamDynamics> {
-    let mut rows: Vec<BeamDynamics> = skeleton.beams.iter().map(at_rest).collect();
+    let mut rows: Vec<BeamDynamics> = skeleton.beams.iter().map(|beam| at_rest(species, beam)).collect();
     let tree = branches(species, skeleton);
     let has_leaves = !skeleton.clusters.is_empty();
     let exponents = [species.foliage.drag_exponent, species.wood.drag_exponent];
@@ -142,13 +142,14 @@ pub fn tree_sway(species: &Species, skeleton: &Skeleton) -> TreeSway {
     TreeSway { frequency_hz, dbh_m, height_m: skeleton.height_m() }
 }
 
-fn at_rest(beam: &SkeletonBeam) -> BeamDynamics {
+fn at_rest(species: &Species, beam: &SkeletonBeam) -> BeamDynamics {
     BeamDynamics {
         base: beam.base,
         length_m: beam.length_m,
         direction: beam.direction,
         attach: beam.attach,
         parent: beam.parent.unwrap_or(NO_PARENT),
+        compliance_rad_n_m: hinges::beam_compliance(species, beam) as f32,
         in_leaf: BeamSway::default(),
         angle_limit_rad: TIP_ANGLE_LIMIT,
         bare: BeamSway::default(),

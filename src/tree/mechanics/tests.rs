@@ -2,7 +2,7 @@
 
 use super::{
     branches::{LoadedBranch, Lump},
-    hinges::{BARK_SHARE, Hinge},
+    hinges::{BARK_SHARE, Hinge, beam_compliance},
     resonance::resonances_hz,
     statics::{Beyond, GRAVITY_M_S2, PieceWeight, influence, softening, stands},
     *,
@@ -96,6 +96,36 @@ fn rod(from: DVec3, direction: DVec3, length_m: f64, before_m: f64, [bend_nm2, t
         }
     };
     (0..count).map(hinge).collect()
+}
+
+/// By the moment of a force at the tip, piece by piece.
+#[test]
+fn beams_give_under_a_force_at_their_tip_as_their_taper_does() {
+    let species = Species::default();
+    let beam = SkeletonBeam {
+        parent: Some(0),
+        attach: 0.5,
+        base: Vec3::ZERO,
+        direction: Vec3::X,
+        length_m: 3.0,
+        base_radius_m: 0.05,
+        tip_radius_m: 0.02,
+        bow: Vec3::ZERO,
+        order: 1,
+    };
+    let pieces = 10_000;
+    let turn: f64 = (0..pieces)
+        .map(|piece| (f64::from(piece) + 0.5) / f64::from(pieces))
+        .map(|s| {
+            let wood_m = (1.0 - BARK_SHARE) * f64::from(beam.radius_m(s as f32));
+            let stiffness = f64::from(species.wood.young_modulus_pa) * std::f64::consts::PI / 4.0 * wood_m.powi(4);
+            3.0 * (1.0 - s) * 3.0 / (stiffness * f64::from(pieces))
+        })
+        .sum();
+    let even = beam_compliance(&species, &beam) * 3.0 / 2.0;
+    assert!((even / turn - 1.0).abs() < 1e-4, "{even} against {turn}");
+    let stem = SkeletonBeam { parent: None, ..beam };
+    assert!(beam_compliance(&species, &stem) > beam_compliance(&species, &beam));
 }
 
 /// A rigid pole of mass m and length L on a spring: w^2 = (k - m g L/2) / (m L^2/3); hanging, the weight stiffens it.

@@ -2,3 +2,4 @@
 
 pub(super) mod active;
 pub(super) mod clock;
+pub(super) mod sources;

@@ -1,0 +1,151 @@
+//! What a beam has to do with the wind of a source.
+
+use crate::{
+    dynamics::{
+        beam::{BeamDynamics, BeamWind, DRAG_SPEED_M_S, FOLDING_SPEED_M_S},
+        pose::SLOPE_TIP,
+    },
+    wind::cross_flow_pressure,
+};
+use bevy::math::{Vec3, Vec3A};
+
+/// A beam of a tree that is touched, prepared for one wind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LiveBeam {
+    /// Where the wind presses as on all that bends it, in the tree's coordinates, m.
+    pub load_at: Vec3,
+    /// How far what bends it is spread about there, as a standard deviation in each direction, m.
+    pub spread_m: f32,
+    direction: Vec3,
+    /// Free tip angle by pressure, rad s^2/m^2.
+    gain: f32,
+    drag_exponent: f32,
+    /// Class of its natural frequency: one that has an oscillator.
+    pub class: usize,
+    /// Share of the more strongly damped oscillator.
+    pub(super) damped: f32,
+}
+
+/// Place on its axis where a beam is loaded, unless its height tells otherwise.
+const LOADED_AT: f32 = 0.6;
+
+impl LiveBeam {
+    /// A beam of a tree of some scale that has a share of its leaves, 0 to 1.
+    #[must_use]
+    pub fn new(beam: &BeamDynamics, wind: &BeamWind, scale: f32, leaf_share: f32) -> Self {
+        let (sway, grid) = (beam.sway(leaf_share), &wind.grid);
+        let finite = |value: f32| if value.is_finite() { value } else { 0.0 };
+        let own_hz = grid.classes.lowest_hz * grid.classes.ratio.powf(sway.class);
+        let oscillating = grid.classes.quasi_static().max(1) - 1;
+        let along = beam.base + beam.direction * (LOADED_AT * beam.length_m);
+        Self {
+            load_at: along.with_y(finite(sway.load_height_m)),
+            spread_m: finite(sway.averaging_speed_m_s / own_hz).max(0.0),
+            direction: beam.direction,
+            gain: finite(SLOPE_TIP * sway.gain),
+            drag_exponent: finite(sway.drag_exponent).clamp(-1.0, 0.0),
+            class: grid.classes.nearest(sway.class + grid.classes.shift(scale)).min(oscillating),
+            damped: grid.damped_share(sway.damping_ratio(wind, scale)),
+        }
+    }
+
+    /// The static free angle, rad, by which a source's velocity bends it further than the wind there does alone; both m/s in the
+    /// tree's axes. Drag grows with less than the square of the speed, as in any wind.
+    #[must_use]
+    pub fn load(&self, wind: Vec3, source: Vec3) -> Vec3A {
+        if source == Vec3::ZERO {
+            return Vec3A::ZERO;
+        }
+        let pressure = |velocity: Vec3| {
+            let speed = velocity.length().max(FOLDING_SPEED_M_S) / DRAG_SPEED_M_S;
+            cross_flow_pressure(velocity, self.direction) * speed.powf(self.drag_exponent)
+        };
+        let angle = self.gain * (pressure(wind + source) - pressure(wind));
+        if angle.is_finite() { angle.into() } else { Vec3A::ZERO }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        dynamics::{
+            beam::{BeamSway, NO_PARENT},
+            frequency_classes::FrequencyClasses,
+            mean_wind::MeanWind,
+            oscillator_grid::OscillatorGrid,
+            stand_wind::StandWind,
+        },
+        wind::LogProfile,
+    };
+
+    const SWAY: BeamSway = BeamSway {
+        gain: 1e-3,
+        class: 8.0,
+        averaging_speed_m_s: 0.9,
+        drag_damping_s_m: 5e-3,
+        load_height_m: 10.0,
+        drag_exponent: -0.35,
+    };
+
+    fn beam(sway: BeamSway) -> BeamDynamics {
+        BeamDynamics {
+            base: Vec3::ZERO,
+            length_m: 14.0,
+            direction: Vec3::Y,
+            attach: 0.0,
+            parent: NO_PARENT,
+            angle_limit_rad: 1.1,
+            compliance_rad_n_m: 1e-6,
+            in_leaf: sway,
+            bare: sway,
+        }
+    }
+
+    fn wind(speed_m_s: f32) -> BeamWind {
+        let mean = MeanWind::new(&LogProfile::from_reference(speed_m_s, 0.1, 0.0), 10.0);
+        let grid = OscillatorGrid::new(FrequencyClasses::default(), 0.05, speed_m_s, 10.0);
+        BeamWind { stand: StandWind::open(mean), grid }
+    }
+
+    /// The table's own answer to the mean wind, at the height at which that is given.
+    #[test]
+    fn a_steady_source_bends_a_beam_as_so_much_more_wind_does() {
+        let table = |speed_m_s: f32| SLOPE_TIP * SWAY.answer(&wind(speed_m_s), 1.0).mean_gain * speed_m_s * speed_m_s;
+        let live = LiveBeam::new(&beam(SWAY), &wind(6.0), 1.0, 1.0);
+        for source_m_s in [-3.0, 2.0, 14.0] {
+            let added = live.load(Vec3::X * 6.0, Vec3::X * source_m_s);
+            let expected = table(6.0 + source_m_s) - table(6.0);
+            assert!((added.x / expected - 1.0).abs() < 1e-4, "{source_m_s}: {added} against {expected}");
+            assert_eq!((added.y, added.z), (0.0, 0.0));
+        }
+        assert_eq!(live.load(Vec3::X * 6.0, Vec3::Y * 9.0).y, 0.0, "what blows along a beam does not bend it");
+    }
+
+    #[test]
+    fn spreads_are_sizes_and_do_not_depend_on_the_wind() {
+        let own_hz = 0.05 * 1.22_f32.powi(8);
+        let live = LiveBeam::new(&beam(SWAY), &wind(6.0), 1.0, 1.0);
+        assert!((live.spread_m - 0.9 / own_hz).abs() < 1e-4);
+        assert_eq!(live.load_at, Vec3::Y * 10.0);
+        // A tree twice as large sways half as fast: between three and four classes.
+        assert_eq!(LiveBeam::new(&beam(SWAY), &wind(6.0), 2.0, 1.0).class, 5);
+    }
+
+    #[test]
+    fn any_beam_in_any_wind_has_a_finite_load() {
+        for odd in [f32::NAN, f32::INFINITY, -1.0, 0.0, 1e30] {
+            for sway in [
+                BeamSway { gain: odd, ..SWAY },
+                BeamSway { class: odd, ..SWAY },
+                BeamSway { averaging_speed_m_s: odd, ..SWAY },
+                BeamSway { load_height_m: odd, ..SWAY },
+                BeamSway { drag_exponent: odd, ..SWAY },
+            ] {
+                let live = LiveBeam::new(&beam(sway), &wind(6.0), odd, odd);
+                assert!(live.load_at.is_finite() && live.spread_m >= 0.0 && live.damped.is_finite(), "{live:?}");
+                assert!(live.load(Vec3::X, Vec3::splat(odd)).is_finite());
+            }
+        }
+    }
+}
