@@ -44,6 +44,7 @@
 //! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Terrain`](terrain::Terrain) | texture, render |
 //! | [`cells`] | the grid of a forest: what to plant, what is seen, stems by place; no ECS | scatter |
 //! | [`forest`] | forests that grow from plans around the viewers, [`Forest`](forest::Forest) | scatter, cells, terrain, tree, lod, sway, wind, render |
+//! | `editor` | panels that edit all of it while the program runs | forest, tree, lod, sway, wind, render, dynamics, texture |
 //!
 //! What all rooms may use lies beside `lib.rs`: [`Ground`], [`Viewpoint`], [`SettingError`] and their like.
 //!
@@ -51,10 +52,12 @@
 //!
 //! # Features
 //! `render` (on by default) holds all drawing. Without it, [`WindwoodMinimalPlugins`] moves the same trees on a server or in
-//! a test.
+//! a test. `editor` adds the workbench: panels that edit species, wind and levels while the program runs.
 
 mod background;
 mod constants;
+#[cfg(feature = "editor")]
+mod file_write;
 mod ground;
 mod interpolation;
 mod mixing;
@@ -70,6 +73,8 @@ mod viewpoint;
 
 pub mod cells;
 pub mod dynamics;
+#[cfg(feature = "editor")]
+pub mod editor;
 pub mod fire;
 pub mod forest;
 pub mod grass;

@@ -26,7 +26,7 @@ use circles::circles;
 use modules::{Crate, File};
 
 /// A room and the rooms it may import. A room that is not here may not exist.
-const MAY_KNOW: [(&str, &[&str]); 13] = [
+const MAY_KNOW: [(&str, &[&str]); 14] = [
     ("wind", &[]),
     ("dynamics", &["wind"]),
     ("texture", &[]),
@@ -40,6 +40,7 @@ const MAY_KNOW: [(&str, &[&str]); 13] = [
     ("grass", &["sway", "render"]),
     ("fire", &["sway", "wind", "render"]),
     ("forest", &["scatter", "cells", "terrain", "tree", "lod", "sway", "wind", "render"]),
+    ("editor", &["forest", "tree", "lod", "sway", "wind", "render", "dynamics", "texture"]),
 ];
 
 /// Rooms that are all entities and systems.

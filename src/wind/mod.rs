@@ -18,7 +18,7 @@
 //! # Files
 //! - Plain arithmetic without an app: `settings`, `frame`, `profile`, `spectrum`, `level_spectrum`, `coherence`,
 //!   `factorisation`, `synthesis`, `interpolation`, `lateral`, `fast_gusts`, `field`, `pressure`, `canopy`,
-//!   `cross_fade`.
+//!   `cross_fade`, `targets`.
 //! - For an app: `ecs/clock` ([`WindClock`]), `ecs/active` ([`Wind`], [`ActiveWind`]), `components` ([`WindCell`]),
 //!   `gizmos`, `plugin`.
 //!
@@ -47,6 +47,8 @@ mod profile;
 mod settings;
 mod spectrum;
 mod synthesis;
+#[cfg(feature = "editor")]
+mod targets;
 
 pub use crate::constants::REFERENCE_HEIGHT_M;
 pub use canopy::{Canopy, EXPOSURE_DIRECTIONS};
