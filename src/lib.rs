@@ -175,4 +175,7 @@ mod guide {
     struct Servers;
     #[doc = include_str!("../docs/guide/shaders.md")]
     struct Shaders;
+    #[cfg(feature = "editor")]
+    #[doc = include_str!("../docs/guide/workbench.md")]
+    struct Workbench;
 }

@@ -129,7 +129,8 @@ fn skeleton(model: &TreeModel) -> Diagram {
         out.add(&points, &lines, Vec3::ZERO, |_| colour(beam.order));
         *counts.entry(beam.order).or_default() += 1;
     }
-    out.legend = counts.into_iter().map(|(order, count)| (format!("order {order}: {count} beams"), colour(order))).collect();
+    out.legend =
+        counts.into_iter().map(|(order, count)| (format!("order {order}: {count} beams"), colour(order))).collect();
     out
 }
 
@@ -253,7 +254,8 @@ mod tests {
 
     #[test]
     fn the_scale_of_colours_gets_lighter() {
-        let lightness = |share: f32| linear(viridis(share)).into_iter().zip([0.21, 0.72, 0.07]).map(|(a, b)| a * b).sum::<f32>();
+        let lightness =
+            |share: f32| linear(viridis(share)).into_iter().zip([0.21, 0.72, 0.07]).map(|(a, b)| a * b).sum::<f32>();
         assert!((0..20).all(|step| lightness(step as f32 / 20.0) < lightness((step + 1) as f32 / 20.0)));
     }
 }

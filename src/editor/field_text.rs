@@ -65,7 +65,8 @@ fn split_unit(name: &str) -> (&str, Option<Unit>) {
 
 /// The range that a [`SettingError`](crate::SettingError) allows, such as `a power of two, 8 to 1024`.
 pub fn allowed_range(allowed: &str) -> Option<RangeInclusive<f64>> {
-    range(allowed.rsplit(", ").next()?)
+    let open = allowed.strip_prefix("at least ").and_then(|low| low.strip_suffix(" and finite")?.parse().ok());
+    open.map(|low: f64| low..=f64::from(f32::MAX)).or_else(|| range(allowed.rsplit(", ").next()?))
 }
 
 /// The first range in a documentation: `0.5 to 120`, or `domain: [0.1, 10]`, or `0..=3`.
@@ -116,6 +117,7 @@ mod tests {
         assert_eq!(allowed_range("0.5 to 17.2"), Some(0.5..=17.2));
         assert_eq!(allowed_range("a power of two, 8 to 1024"), Some(8.0..=1024.0));
         assert_eq!(allowed_range("at most 5 orders"), None);
+        assert_eq!(allowed_range("at least 0 and finite"), Some(0.0..=f64::from(f32::MAX)));
         assert_eq!(documented_range("Height of the tree, m: 0.5 to 120."), Some(0.5..=120.0));
         assert_eq!(documented_range("Turn, degrees: -360 to 360. Turn 0 is level."), Some(-360.0..=360.0));
         assert_eq!(documented_range("Faster. domain: [0.1, 10]."), Some(0.1..=10.0));

@@ -9,12 +9,12 @@ use std::ops::RangeInclusive;
 use bevy::{
     math::Dir2,
     reflect::{
-        GetPath, PartialReflect, Reflect, ReflectRef, TypeInfo,
-        enums::{VariantInfo, VariantType},
+        GetPath, NamedField, PartialReflect, Reflect, ReflectRef, TypeInfo,
+        enums::{Enum, VariantInfo, VariantType},
     },
 };
 
-use super::field_text::{Unit, allowed_range, documented_range, label, unit};
+use super::field_text::{Unit, allowed_range, documented_range, label as label_of, unit};
 use crate::setting::SettingError;
 
 /// A group of fields: a struct, a list, or what a variant holds.
@@ -170,14 +170,15 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     fn section(&self, value: &dyn PartialReflect, title: String, place: Place, docs: &str) -> Section {
-        let mut section = Section { title, docs: docs.to_owned(), path: place.path.clone(), rows: Vec::new(), is_list: false };
+        let mut section =
+            Section { title, docs: docs.to_owned(), path: place.path.clone(), rows: Vec::new(), is_list: false };
         match value.reflect_ref() {
             ReflectRef::Struct(fields) => {
                 let info = value.get_represented_type_info().and_then(|info| info.as_struct().ok());
                 for index in 0..fields.field_len() {
                     let (Some(name), Some(value)) = (fields.name_at(index), fields.field_at(index)) else { continue };
                     let docs = info.and_then(|info| info.field_at(index)?.docs()).map(plain).unwrap_or_default();
-                    self.rows(value, name, &label(name), place.field(name), &docs, &mut section.rows);
+                    self.rows(value, name, &label_of(name), place.field(name), &docs, &mut section.rows);
                 }
             }
             ReflectRef::List(list) => {
@@ -198,7 +199,15 @@ impl Walk<'_> {
         let field = |kind: Kind, range| {
             let Place { path, name: error_name } = place.clone();
             let unit = matches!(kind, Kind::Number | Kind::Whole).then(|| unit(name, docs)).flatten();
-            Row::Field(Field { path, name: error_name, label: label.to_owned(), docs: docs.to_owned(), unit, range, kind })
+            Row::Field(Field {
+                path,
+                name: error_name,
+                label: label.to_owned(),
+                docs: docs.to_owned(),
+                unit,
+                range,
+                kind,
+            })
         };
         if let Some(kind) = plain_kind(value, name) {
             let has_range = matches!(kind, Kind::Number | Kind::Whole);
@@ -209,10 +218,7 @@ impl Walk<'_> {
         match value.reflect_ref() {
             ReflectRef::Enum(variant) => {
                 rows.push(field(Kind::Choice(choices(value)), None));
-                if variant.variant_type() == VariantType::Tuple && let Some(held) = variant.field_at(0) {
-                    let title = format!("{label}: {}", words(variant.variant_name()));
-                    rows.push(Row::Section(self.section(held, title, place.held(), docs)));
-                }
+                self.variant_rows(variant, label, &place, docs, rows);
             }
             ReflectRef::Array(array) => {
                 for (index, item) in array.iter().enumerate() {
@@ -222,6 +228,51 @@ impl Walk<'_> {
             }
             ReflectRef::Struct(_) | ReflectRef::List(_) => {
                 rows.push(Row::Section(self.section(value, label.to_owned(), place, docs)));
+            }
+            _ => {}
+        }
+    }
+}
+
+impl Walk<'_> {
+    /// What a variant holds: the settings of one struct, fields of its own, or one value.
+    fn variant_rows(&self, variant: &dyn Enum, label: &str, place: &Place, docs: &str, rows: &mut Vec<Row>) {
+        let name = variant.variant_name();
+        let title = format!("{label}: {}", words(name));
+        let info = variant.get_represented_type_info().and_then(|info| info.as_enum().ok()?.variant(name));
+        match (variant.variant_type(), variant.field_at(0)) {
+            (VariantType::Tuple, Some(held)) if matches!(held.reflect_ref(), ReflectRef::Struct(_)) => {
+                rows.push(Row::Section(self.section(held, title, place.held(), docs)));
+            }
+            (VariantType::Tuple, Some(held)) => {
+                let place = Place { path: place.held().path, name: place.field(name).name };
+                let docs = choices(variant.as_partial_reflect()).into_iter().find(|choice| choice.name == name);
+                self.rows(held, name, &words(name), place, &docs.map(|choice| choice.docs).unwrap_or_default(), rows);
+            }
+            (VariantType::Struct, _) => {
+                let mut inside = Section {
+                    title,
+                    docs: docs.to_owned(),
+                    path: place.path.clone(),
+                    rows: Vec::new(),
+                    is_list: false,
+                };
+                for index in 0..variant.field_len() {
+                    let (Some(name), Some(value)) = (variant.name_at(index), variant.field_at(index)) else { continue };
+                    let docs = match info {
+                        Some(VariantInfo::Struct(info)) => info.field_at(index).and_then(NamedField::docs).map(plain),
+                        _ => None,
+                    };
+                    self.rows(
+                        value,
+                        name,
+                        &label_of(name),
+                        place.field(name),
+                        &docs.unwrap_or_default(),
+                        &mut inside.rows,
+                    );
+                }
+                rows.push(Row::Section(inside));
             }
             _ => {}
         }

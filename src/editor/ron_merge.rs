@@ -133,7 +133,8 @@ impl Texts<'_> {
 mod tests {
     use super::*;
 
-    const OLD: &str = "(name: \"oak\", age: (years: 120.0, rate: 0.02), orders: [(a: 1), (a: 2)], colour: (0.1, 0.2, 0.3))";
+    const OLD: &str =
+        "(name: \"oak\", age: (years: 120.0, rate: 0.02), orders: [(a: 1), (a: 2)], colour: (0.1, 0.2, 0.3))";
 
     fn merged(own: &str, from: &str, to: &str) -> String {
         merge(own, OLD, &OLD.replace(from, to)).unwrap().text
@@ -156,7 +157,10 @@ mod tests {
     #[test]
     fn a_value_that_was_left_out_is_added_behind_the_others() {
         let own = "(\n    // Its age.\n    age: (years: 120), // about\n)";
-        assert_eq!(merged(own, "\"oak\"", "\"elm\""), "(\n    // Its age.\n    age: (years: 120), // about\n    name: \"elm\",\n)");
+        assert_eq!(
+            merged(own, "\"oak\"", "\"elm\""),
+            "(\n    // Its age.\n    age: (years: 120), // about\n    name: \"elm\",\n)"
+        );
         assert_eq!(merged(own, "0.02", "0.03"), own.replace("years: 120", "years: 120, rate: 0.03"));
         assert_eq!(merged("(\n  age: ()\n)", "0.02", "0.03"), "(\n  age: (rate: 0.03)\n)");
         assert_eq!(merged("(\n  age: ()\n)", "oak", "elm"), "(\n  age: (),\n  name: \"elm\",\n)");

@@ -165,7 +165,8 @@ impl<'a> Reader<'a> {
         let inside = self.at;
         let name = self.word();
         self.skip_blank();
-        let is_struct = (!name.is_empty() && self.rest().starts_with(':')) || self.rest().starts_with(')') && name.is_empty();
+        let is_struct =
+            (!name.is_empty() && self.rest().starts_with(':')) || self.rest().starts_with(')') && name.is_empty();
         self.at = inside;
         if !is_struct {
             return self.items(')').map(Shape::List);

@@ -1,6 +1,9 @@
 //! A species that is edited: its file, its history, and what has to be asked before anything is lost.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use super::{
     fields::{Field, Section, all_fields, copy_at, fields_of, is_same_at},
@@ -17,7 +20,7 @@ pub const NATURAL_SPREAD: f64 = 0.1;
 pub struct Session {
     file: SpeciesFile,
     history: History<Species>,
-    table: Section,
+    table: Arc<Section>,
     table_of: Species,
     /// What the last action did, or why it could not.
     pub message: Option<Message>,
@@ -79,7 +82,7 @@ impl Session {
         let species = file.species.clone();
         Self {
             history: History::new(species.clone()),
-            table: fields_of(&species, Species::validate),
+            table: fields_of(&species, Species::validate).into(),
             table_of: species,
             file,
             message: None,
@@ -110,7 +113,7 @@ impl Session {
     }
 
     /// The table of its fields. Ranges are those of the last species that was valid.
-    pub fn table(&self) -> &Section {
+    pub fn table(&self) -> &Arc<Section> {
         &self.table
     }
 
@@ -184,6 +187,10 @@ impl Session {
 
     /// Saves the species to its file. Asks first, where comments or another program's changes would be lost.
     pub fn save(&mut self) {
+        if self.error().is_some() {
+            self.save_to(None);
+            return;
+        }
         self.look_at_disk();
         let loses_comments = self.file.text_of(self.species()).is_ok_and(|merged| merged.loses_comments);
         self.question = match self.on_disk {
@@ -301,7 +308,7 @@ impl Session {
     fn refresh(&mut self) {
         if self.table_of != *self.history.value() && self.history.value().validate().is_ok() {
             self.table_of = self.history.value().clone();
-            self.table = fields_of(&self.table_of, Species::validate);
+            self.table = fields_of(&self.table_of, Species::validate).into();
         }
     }
 }

@@ -59,8 +59,7 @@ impl SpeciesFile {
     /// Where it cannot be read, or is not a species.
     pub fn open(path: &Path) -> Result<Self, FileError> {
         let text = fs::read_to_string(path).map_err(|error| FileError::Disk { path: path.to_owned(), error })?;
-        let species =
-            Species::from_ron(&text).map_err(|error| FileError::Content { path: path.to_owned(), error })?;
+        let species = Species::from_ron(&text).map_err(|error| FileError::Content { path: path.to_owned(), error })?;
         Ok(Self { path: path.to_owned(), species, text: Some(text) })
     }
 

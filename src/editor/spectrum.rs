@@ -122,9 +122,8 @@ mod tests {
     #[test]
     fn noise_is_flat_and_has_its_variance() {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
-        let series: Vec<Transform> = (0..16)
-            .map(|_| Transform::new((0..SAMPLES).map(|_| random.random_range(-1.0..1.0)), PERIOD_S))
-            .collect();
+        let series: Vec<Transform> =
+            (0..16).map(|_| Transform::new((0..SAMPLES).map(|_| random.random_range(-1.0..1.0)), PERIOD_S)).collect();
         let bands = spectrum(&series);
         // Variance 1/3 over 8 Hz. A band of n lines and 16 series scatters by 1 / sqrt(16 n).
         let high: Vec<&Band> = bands.iter().filter(|band| band.frequency_hz > 0.5).collect();
@@ -140,7 +139,9 @@ mod tests {
         let same: Vec<_> = series.iter().map(|one| (one, one)).collect();
         assert!(root_coherence(&same).iter().all(|band| (band.value - 1.0).abs() < 1e-12));
         let others: Vec<_> = series.iter().zip(series.iter().skip(1)).collect();
-        assert!(root_coherence(&others).iter().filter(|band| band.frequency_hz > 0.5).all(|band| band.value.abs() < 0.1));
+        assert!(
+            root_coherence(&others).iter().filter(|band| band.frequency_hz > 0.5).all(|band| band.value.abs() < 0.1)
+        );
         assert!(root_coherence(&[]).is_empty() && spectrum(&[]).is_empty());
         assert!(spectrum(&[Transform::new(std::iter::empty(), 1.0)]).is_empty());
     }

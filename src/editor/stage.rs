@@ -171,7 +171,10 @@ mod tests {
                     let depth = point.dot(forward);
                     let (x, y) = (point.dot(right) / depth, point.dot(up) / depth);
                     let half = 0.3_f32.tan();
-                    assert!(x.abs() < half * aspect && y.abs() < half, "{corner:?} of {height_m} x {width_m}: {x}, {y}");
+                    assert!(
+                        x.abs() < half * aspect && y.abs() < half,
+                        "{corner:?} of {height_m} x {width_m}: {x}, {y}"
+                    );
                 }
             }
         }

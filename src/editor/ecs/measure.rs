@@ -63,9 +63,10 @@ pub(super) fn measure_tip(
     let Some(model) = models.get(&grown.model) else { return };
     let leaf_share = model.leaf_season.share(season.wrapped() + tree.season_shift());
     let leaf_step = (leaf_share * LEAF_STEPS).round() as i32;
-    let is_known = measuring.tip_of.as_ref().is_some_and(|(of, id, step)| {
-        Arc::ptr_eq(of, response) && (*id, *step) == (grown.model.id(), leaf_step)
-    });
+    let is_known = measuring
+        .tip_of
+        .as_ref()
+        .is_some_and(|(of, id, step)| Arc::ptr_eq(of, response) && (*id, *step) == (grown.model.id(), leaf_step));
     if is_known {
         return;
     }

@@ -41,12 +41,12 @@ pub(super) fn begin_diagrams(
     let view = workbench.stage.view;
     for (entity, tree, grown, made, making) in &trees {
         let key = (grown.model.id(), view);
-        let is_known = made.is_some_and(|made| (made.0, made.1) == key) || making.is_some_and(|making| making.key == key);
+        let is_known =
+            made.is_some_and(|made| (made.0, made.1) == key) || making.is_some_and(|making| making.key == key);
         let Some(model) = models.get(&grown.model).filter(|_| !is_known) else { continue };
         let (model, decimations) = (model.clone(), levels.bake.decimations.clone());
         let leaf_share = model.leaf_season.share(season.wrapped() + tree.season_shift());
-        let task =
-            AsyncComputeTaskPool::get().spawn(async move { diagram(&model, view, &decimations, leaf_share) });
+        let task = AsyncComputeTaskPool::get().spawn(async move { diagram(&model, view, &decimations, leaf_share) });
         commands.entity(entity).insert(MakingDiagram { key, task });
     }
 }

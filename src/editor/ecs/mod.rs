@@ -42,7 +42,10 @@ impl Plugin for EditorPlugin {
         require_plugin::<Self, TreeRenderPlugin>(app);
         if !app.is_plugin_added::<EguiPlugin>() {
             app.add_plugins(EguiPlugin::default());
-            app.world_mut().resource_mut::<EguiGlobalSettings>().auto_create_primary_context = false;
+            let mut settings = app.world_mut().resource_mut::<EguiGlobalSettings>();
+            settings.auto_create_primary_context = false;
+            // What is typed or dragged in a panel is not meant for the game.
+            settings.enable_absorb_bevy_input_system = true;
         }
         let mut workbench = Workbench::new(self.file.as_deref(), self.turntable);
         workbench.is_open = self.starts_open;

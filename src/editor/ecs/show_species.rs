@@ -5,7 +5,7 @@ use super::{
     workbench::Workbench,
 };
 use crate::{
-    render::TreeMeshes,
+    render::{TreeMeshOf, TreeMeshes},
     tree::{Grown, Species, SpeciesModels, TreeModel},
 };
 use bevy::prelude::*;
@@ -87,20 +87,25 @@ pub(super) fn note_tree(
     mut applied: ResMut<Applied>,
     models: Res<Assets<TreeModel>>,
     baked: Res<SpeciesModels>,
-    trees: Query<(&StageTree, Option<&Grown>, Option<Ref<TreeMeshes>>)>,
+    trees: Query<(&StageTree, Option<&Grown>, Option<&TreeMeshes>)>,
+    meshes: Query<Ref<Mesh3d>, With<TreeMeshOf>>,
 ) {
     let workbench = workbench.bypass_change_detection();
     let edited = || trees.iter().filter(|(StageTree(stand), ..)| !stand.is_saved);
-    let is_new = edited().any(|(_, _, meshes)| meshes.is_some_and(|meshes| meshes.is_changed()));
+    let has_new = |of: &TreeMeshes| of.iter().any(|mesh| meshes.get(mesh).is_ok_and(|mesh| mesh.is_changed()));
+    let is_new = edited().any(|(_, _, of)| of.is_some_and(has_new));
     let variants = if workbench.has_turntable { workbench.stage.variants() } else { workbench.species().variants };
     let is_applied = applied.shown.as_ref() == Some(&with_variants(workbench.species(), variants));
-    if is_new && is_applied && let Some(since) = applied.since.take() {
+    if is_new
+        && is_applied
+        && let Some(since) = applied.since.take()
+    {
         workbench.tree.grown_in_ms = Some(1e3 * since.elapsed().as_secs_f64());
         applied.good = Some(workbench.species().clone());
     }
     workbench.tree.is_growing = baked.is_baking()
         || (applied.since.is_some() && workbench.has_turntable && workbench.species().validate().is_ok())
-        || edited().any(|(_, _, meshes)| meshes.is_none());
+        || edited().any(|(_, _, of)| of.is_none());
     let model = edited().find_map(|(_, grown, _)| models.get(&grown?.model));
     if let Some(model) = model {
         workbench.tree.height_m = model.height_m();

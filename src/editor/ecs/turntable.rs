@@ -141,7 +141,8 @@ pub(super) fn turn(
     if wants.wants_any_pointer_input() {
         return;
     }
-    if buttons.is_some_and(|buttons| buttons.any_pressed([MouseButton::Left, MouseButton::Right, MouseButton::Middle])) {
+    if buttons.is_some_and(|buttons| buttons.any_pressed([MouseButton::Left, MouseButton::Right, MouseButton::Middle]))
+    {
         let delta = motion.map_or(Vec2::ZERO, |motion| motion.delta);
         stage.turn_rad -= DRAG_RAD * delta.x;
         stage.rise_rad = (stage.rise_rad + DRAG_RAD * delta.y).clamp(RISES_RAD[0], RISES_RAD[1]);

@@ -27,7 +27,8 @@ fn change_every_field(session: &mut Session) -> usize {
         let Some(range) = field.range.clone() else { continue };
         let Ok(value) = species.reflect_path_mut(field.path.as_str()) else { continue };
         let now = number(value).unwrap();
-        let wanted = 0.9 * now + 0.1 * if now < 0.5 * (range.start() + range.end()) { range.end() } else { range.start() };
+        let wanted =
+            0.9 * now + 0.1 * if now < 0.5 * (range.start() + range.end()) { range.end() } else { range.start() };
         set_number(value, wanted);
         if species.validate().is_ok() && species != *session.species() {
             session.change(species, &field.name);

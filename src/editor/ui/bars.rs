@@ -87,7 +87,8 @@ pub fn stage_bar(ui: &mut Ui, stage: &mut Stage, season: &mut Season, wind: &mut
             }
         }
         ui.separator();
-        ui.checkbox(&mut stage.compares, "Beside the saved").on_hover_text("The tree as it is in its file stands to the left");
+        ui.checkbox(&mut stage.compares, "Beside the saved")
+            .on_hover_text("The tree as it is in its file stands to the left");
         ui.checkbox(&mut stage.turns, "Turn").on_hover_text("Ctrl+T");
     });
     ui.horizontal(|ui| {
@@ -104,7 +105,10 @@ pub fn stage_bar(ui: &mut Ui, stage: &mut Stage, season: &mut Season, wind: &mut
         };
         part(ui, "Age", &mut |ui| {
             ui.add(Slider::new(&mut years, 1.0..=2.0 * mature_years).show_value(false).logarithmic(true));
-            ui.add_sized(vec2(64.0, ROW - 4.0), DragValue::new(&mut years).range(1.0..=5000.0).suffix(" a").max_decimals(0));
+            ui.add_sized(
+                vec2(64.0, ROW - 4.0),
+                DragValue::new(&mut years).range(1.0..=5000.0).suffix(" a").max_decimals(0),
+            );
         });
         stage.age_share = years / mature_years;
         part(ui, "Season", &mut |ui| {
@@ -130,7 +134,18 @@ pub fn stage_bar(ui: &mut Ui, stage: &mut Stage, season: &mut Season, wind: &mut
 /// The month of a time of the year, which begins at midwinter, the 21st of December.
 fn month(year: f32) -> &'static str {
     const MONTHS: [&str; 12] = [
-        "January", "February", "March", "April", "May", "June", "July", "August", "September", "October", "November", "December",
+        "January",
+        "February",
+        "March",
+        "April",
+        "May",
+        "June",
+        "July",
+        "August",
+        "September",
+        "October",
+        "November",
+        "December",
     ];
     let day = (year.rem_euclid(1.0) * 365.0 - 11.0).rem_euclid(365.0);
     MONTHS[((day / 365.0 * 12.0) as usize).min(11)]
@@ -144,10 +159,8 @@ pub fn status_bar(ui: &mut Ui, session: &Session, facts: &TreeFacts) -> bool {
         ui.set_height(20.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let time = facts.grown_in_ms.map_or_else(String::new, |ms| format!("  ·  grown in {ms:.0} ms"));
-            let counts = format!(
-                "{:.1} m  ·  {} beams  ·  {} triangles{time}",
-                facts.height_m, facts.beams, facts.triangles
-            );
+            let counts =
+                format!("{:.1} m  ·  {} beams  ·  {} triangles{time}", facts.height_m, facts.beams, facts.triangles);
             ui.label(RichText::new(counts).weak());
             if facts.is_growing {
                 is_cancelled = ui.small_button("Cancel").on_hover_text("Go back to the tree that is shown").clicked();

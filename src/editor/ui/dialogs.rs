@@ -134,7 +134,10 @@ fn shortcuts(ui: &mut Ui) -> bool {
             ui.label(shortcut.what);
             ui.end_row();
         }
-        for (keys, what) in [("Tab, arrows", "From control to control; change a slider"), ("Drag, wheel", "Turn the tree; nearer and farther")] {
+        for (keys, what) in [
+            ("Tab, arrows", "From control to control; change a slider"),
+            ("Drag, wheel", "Turn the tree; nearer and farther"),
+        ] {
             ui.label(RichText::new(keys).monospace());
             ui.label(what);
             ui.end_row();

@@ -56,14 +56,17 @@ pub fn plot(ui: &mut Ui, form: &PlotForm, curves: Vec<Curve>) {
     plot.show(ui, |plot| {
         for (name, at) in form.marks {
             let at = if is_log_x { at.max(1e-12).log10() } else { *at };
-            plot.vline(VLine::new(format!("{name} {at:.2}"), at).name(*name).color(target).style(LineStyle::dashed_dense()));
+            plot.vline(
+                VLine::new(format!("{name} {at:.2}"), at).name(*name).color(target).style(LineStyle::dashed_dense()),
+            );
         }
         for curve in curves {
             let place = |[x, y]: [f64; 2]| {
                 let x = if is_log_x { x.log10() } else { x };
                 [x, if is_log_y { y.log10() } else { y }]
             };
-            let points = curve.points.into_iter().map(place).filter(|point| point.iter().all(|value| value.is_finite()));
+            let points =
+                curve.points.into_iter().map(place).filter(|point| point.iter().all(|value| value.is_finite()));
             let points = PlotPoints::from_iter(points);
             let style = if curve.is_target { LineStyle::dashed_loose() } else { LineStyle::Solid };
             plot.line(Line::new(curve.name, points).color(curve.colour).style(style).width(1.6));

@@ -8,8 +8,8 @@ use bevy::{
     },
 };
 use bevy_egui::egui::{
-    self, Align, Button, CollapsingHeader, ComboBox, DragValue, Label, Layout, Response, RichText, Slider, SliderClamping,
-    TextEdit, Ui, vec2,
+    self, Align, Button, CollapsingHeader, ComboBox, DragValue, Label, Layout, Response, RichText, Slider,
+    SliderClamping, TextEdit, Ui, vec2,
 };
 
 use super::theme::{LABEL_WIDTH, ROW};
@@ -21,6 +21,9 @@ const NUMBER_WIDTH: f32 = 84.0;
 const BACK_WIDTH: f32 = 20.0;
 /// A range with ends so far apart has a logarithmic slider.
 const WIDE: f64 = 300.0;
+
+/// A range of that length has no upper end, and no slider.
+const ENDLESS: f64 = 1e30;
 
 /// What was done in the rows besides changing values.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,7 +108,8 @@ impl<'a> Rows<'a> {
                 control.labelled_by(named.id).on_hover_ui(|ui| tooltip(ui, field));
             }
             let back = Button::new(RichText::new("↺")).frame(false).min_size(vec2(BACK_WIDTH, ROW - 4.0));
-            let back = ui.add_visible(is_changed, back).on_hover_text("Back to what the file says, and then to the default");
+            let back =
+                ui.add_visible(is_changed, back).on_hover_text("Back to what the file says, and then to the default");
             back.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("Reset {label}")));
             if back.clicked() {
                 self.actions.push(Action::Reset(field.clone()));
@@ -137,7 +141,8 @@ impl<'a> Rows<'a> {
                 (response, is_set)
             }
             Kind::Text => {
-                let response = ui.add(TextEdit::singleline(value.try_downcast_mut::<String>()?).desired_width(f32::INFINITY));
+                let response =
+                    ui.add(TextEdit::singleline(value.try_downcast_mut::<String>()?).desired_width(f32::INFINITY));
                 let is_set = response.changed();
                 (response, is_set)
             }
@@ -145,7 +150,8 @@ impl<'a> Rows<'a> {
             Kind::Direction => direction_control(ui, value.try_downcast_mut::<Dir2>()?),
             Kind::Choice(choices) => {
                 let (response, chosen) = choice_control(ui, field, value, choices);
-                if let Some(choice) = chosen.filter(|choice| choices.iter().any(|any| any.has_settings) || choice.has_settings)
+                if let Some(choice) =
+                    chosen.filter(|choice| choices.iter().any(|any| any.has_settings) || choice.has_settings)
                 {
                     self.actions.push(Action::Variant(field.clone(), choice.name));
                     return Some(response);
@@ -169,7 +175,8 @@ fn tooltip(ui: &mut Ui, field: &Field) {
     let symbol = field.unit.map_or("", |unit| unit.symbol);
     if let Some(range) = &field.range {
         let [low, high] = [range.start(), range.end()].map(|end| rounded(end * factor));
-        ui.label(RichText::new(format!("{low} to {high} {symbol}")).strong());
+        let text = if high < ENDLESS { format!("{low} to {high} {symbol}") } else { format!("{low} {symbol} or more") };
+        ui.label(RichText::new(text).strong());
     }
     ui.label(RichText::new(&field.name).monospace().weak());
 }
@@ -188,9 +195,10 @@ fn number_control(ui: &mut Ui, field: &Field, value: &mut dyn PartialReflect) ->
     let is_whole = field.kind == Kind::Whole;
     let range = field.range.as_ref().map(|range| rounded(range.start() * factor)..=rounded(range.end() * factor));
     let span = range.as_ref().map_or(1.0, |range| range.end() - range.start());
+    let finite_span = if span < ENDLESS { span } else { 10.0 * before.abs().max(1.0) };
     let gap = ui.spacing().item_spacing.x;
     let mut response = None;
-    if let Some(range) = &range {
+    if let Some(range) = range.as_ref().filter(|_| span < ENDLESS) {
         ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH - gap).max(20.0);
         let is_wide = *range.start() >= 0.0 && span / (range.start().max(before.abs()).max(1e-9)) > WIDE;
         let mut slider = Slider::new(&mut shown, range.clone())
@@ -206,7 +214,11 @@ fn number_control(ui: &mut Ui, field: &Field, value: &mut dyn PartialReflect) ->
         ui.add_space((ui.available_width() - NUMBER_WIDTH - gap).max(0.0));
     }
     let mut drag = DragValue::new(&mut shown)
-        .speed(if is_whole { (span / 400.0).clamp(0.02, 4.0) } else { span.min(20.0 * before.abs().max(0.01)) / 400.0 })
+        .speed(if is_whole {
+            (finite_span / 400.0).clamp(0.02, 4.0)
+        } else {
+            finite_span.min(20.0 * before.abs().max(0.01)) / 400.0
+        })
         .clamp_existing_to_range(false)
         .update_while_editing(false);
     if let Some(range) = range.clone() {
@@ -215,7 +227,7 @@ fn number_control(ui: &mut Ui, field: &Field, value: &mut dyn PartialReflect) ->
     if let Some(unit) = field.unit {
         drag = drag.suffix(if unit.symbol == "°" { "°".into() } else { format!(" {}", unit.symbol) });
     }
-    drag = if is_whole { drag.fixed_decimals(0) } else { drag.max_decimals(decimals(span)) };
+    drag = if is_whole { drag.fixed_decimals(0) } else { drag.max_decimals(decimals(finite_span)) };
     let dragged = ui.add_sized(vec2(NUMBER_WIDTH, ROW - 4.0), drag);
     let is_set = shown != before && shown.is_finite();
     if is_set {

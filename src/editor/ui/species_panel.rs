@@ -129,7 +129,7 @@ fn fields(ui: &mut Ui, session: &mut Session, filter: &str) {
             Action::Changed(step) => session.change(draft.clone(), &step),
             Action::Reset(field) => session.reset(&field),
             Action::Variant(field, variant) => {
-                if let Some(species) = variants::with_variant(session.species(), &field.name, variant) {
+                if let Some(species) = variants::with_variant(session.species(), &field.path, variant) {
                     session.change(species, &field.label);
                     session.end_gesture();
                 }

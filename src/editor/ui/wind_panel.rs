@@ -31,7 +31,8 @@ pub struct WindFacts<'a> {
 /// The check of a field's settings, for the wind that asks for it.
 fn check(wind: &Wind) -> Result<(), SettingError> {
     let Wind { speed, direction, roughness_m, displacement_m, gustiness, seed, fade_s: _ } = *wind;
-    FieldSettings { speed, direction, roughness_m, displacement_m, gustiness, seed, ..FieldSettings::default() }.validate()
+    FieldSettings { speed, direction, roughness_m, displacement_m, gustiness, seed, ..FieldSettings::default() }
+        .validate()
 }
 
 /// The table of a wind's fields.
@@ -130,12 +131,22 @@ pub fn wind_plots(ui: &mut Ui, facts: WindFacts) {
     let height = ((ui.available_height() - 26.0 * rows) / rows).clamp(92.0, 420.0);
     let form = |title, axes| PlotForm { title, axes, height, ..PlotForm::default() };
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        let series = Curve { name: "along the wind", points: measures.series.clone(), colour: palette.lines[0], is_target: false };
+        let series = Curve {
+            name: "along the wind",
+            points: measures.series.clone(),
+            colour: palette.lines[0],
+            is_target: false,
+        };
         plot(ui, &form("Speed at one place", ["s", "m/s"]), vec![series]);
         let mut curves = Vec::new();
         for ((spectrum, (_, name)), colour) in measures.spectra.iter().zip(COMPONENTS).zip(palette.lines) {
             curves.push(Curve { name, points: points(&spectrum.measured), colour, is_target: false });
-            curves.push(Curve { name: "target", points: points(&spectrum.target), colour: palette.target, is_target: true });
+            curves.push(Curve {
+                name: "target",
+                points: points(&spectrum.target),
+                colour: palette.target,
+                is_target: true,
+            });
         }
         let spectra = PlotForm { is_logarithmic: true, ..form("Spectrum beside its target", ["Hz", "m²/s² per Hz"]) };
         plot(ui, &spectra, curves);
@@ -143,18 +154,39 @@ pub fn wind_plots(ui: &mut Ui, facts: WindFacts) {
         let names: Vec<String> = measures.coherence.iter().map(|(lateral_m, _)| format!("{lateral_m:.0} m")).collect();
         for (((_, coherence), colour), name) in measures.coherence.iter().zip(palette.lines).zip(&names) {
             curves.push(Curve { name, points: points(&coherence.measured), colour, is_target: false });
-            curves.push(Curve { name: "target", points: points(&coherence.target), colour: palette.target, is_target: true });
+            curves.push(Curve {
+                name: "target",
+                points: points(&coherence.target),
+                colour: palette.target,
+                is_target: true,
+            });
         }
-        let coherence = PlotForm { has_logarithmic_x: true, ..form("Coherence across the wind", ["Hz", "root coherence"]) };
+        let coherence =
+            PlotForm { has_logarithmic_x: true, ..form("Coherence across the wind", ["Hz", "root coherence"]) };
         plot(ui, &coherence, curves);
         let Some(tip) = facts.tip else { return };
         let motion = vec![
-            Curve { name: "along", points: tip.along.iter().take(1024).copied().collect(), colour: palette.lines[0], is_target: false },
-            Curve { name: "across", points: tip.across.iter().take(1024).copied().collect(), colour: palette.lines[1], is_target: false },
+            Curve {
+                name: "along",
+                points: tip.along.iter().take(1024).copied().collect(),
+                colour: palette.lines[0],
+                is_target: false,
+            },
+            Curve {
+                name: "across",
+                points: tip.across.iter().take(1024).copied().collect(),
+                colour: palette.lines[1],
+                is_target: false,
+            },
         ];
         plot(ui, &form("Top of the tree", ["s", "m"]), motion);
-        let spectrum = vec![Curve { name: "along", points: points(&tip.spectrum), colour: palette.lines[0], is_target: false }];
-        let marked = PlotForm { is_logarithmic: true, marks: &tip.own, ..form("Its spectrum, and its own frequencies", ["Hz", "m²/Hz"]) };
+        let spectrum =
+            vec![Curve { name: "along", points: points(&tip.spectrum), colour: palette.lines[0], is_target: false }];
+        let marked = PlotForm {
+            is_logarithmic: true,
+            marks: &tip.own,
+            ..form("Its spectrum, and its own frequencies", ["Hz", "m²/Hz"])
+        };
         plot(ui, &marked, spectrum);
     });
 }
