@@ -136,6 +136,8 @@ fn open(workbench: &mut Workbench, file: &PathBuf) {
 fn wait(app: &mut App, shot: &Shot) -> Result<(), String> {
     let start = Instant::now();
     // What is asked for has to be taken up before it can be seen to be missing.
+    // Software takes a second for a picture of a tree: it is looked at when it is the right one.
+    look(app, false);
     (0..SETTLING_FRAMES).for_each(|_| step(app));
     loop {
         let workbench = app.world().resource::<Workbench>();
@@ -148,6 +150,14 @@ fn wait(app: &mut App, shot: &Shot) -> Result<(), String> {
         app.update();
         std::thread::sleep(Duration::from_millis(2));
     }
+    look(app, true);
     (0..SETTLING_FRAMES).for_each(|_| step(app));
     Ok(())
+}
+
+/// Switches the camera of the turntable on or off.
+fn look(app: &mut App, is_active: bool) {
+    let world = app.world_mut();
+    let mut cameras = world.query_filtered::<&mut Camera, With<StageCamera>>();
+    cameras.iter_mut(world).for_each(|mut camera| camera.is_active = is_active);
 }

@@ -58,7 +58,7 @@ pub(super) fn measure_tip(
         workbench.tip = motion;
     }
     let response = sway.slots().into_iter().flatten().last().filter(|_| workbench.panel == Panel::Wind);
-    let edited = trees.iter().find(|(StageTree(stand), ..)| !stand.is_saved);
+    let edited = trees.iter().find(|(staged, ..)| !staged.stand.is_saved);
     let Some((response, (_, tree, grown))) = response.zip(edited) else { return };
     let Some(model) = models.get(&grown.model) else { return };
     let leaf_share = model.leaf_season.share(season.wrapped() + tree.season_shift());

@@ -91,7 +91,7 @@ pub(super) fn note_tree(
     meshes: Query<Ref<Mesh3d>, With<TreeMeshOf>>,
 ) {
     let workbench = workbench.bypass_change_detection();
-    let edited = || trees.iter().filter(|(StageTree(stand), ..)| !stand.is_saved);
+    let edited = || trees.iter().filter(|(staged, ..)| !staged.stand.is_saved);
     let has_new = |of: &TreeMeshes| of.iter().any(|mesh| meshes.get(mesh).is_ok_and(|mesh| mesh.is_changed()));
     let is_new = edited().any(|(_, _, of)| of.is_some_and(has_new));
     let variants = if workbench.has_turntable { workbench.stage.variants() } else { workbench.species().variants };
@@ -113,3 +113,6 @@ pub(super) fn note_tree(
         workbench.tree.triangles = (model.wood.indices.len() + model.leaves.indices.len()) / 3;
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -18,7 +18,11 @@ pub struct StageCamera;
 
 /// A tree of the turntable.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
-pub(super) struct StageTree(pub Stand);
+pub(super) struct StageTree {
+    /// Its place in the row.
+    pub place: usize,
+    pub stand: Stand,
+}
 
 /// One turn takes so long, s.
 const TURN_S: f32 = 24.0;
@@ -29,29 +33,32 @@ const WHEEL: f32 = 0.08;
 const DISTANCES: [f32; 2] = [0.15, 3.0];
 const RISES_RAD: [f32; 2] = [-0.2, 1.4];
 
-/// Spawns the trees that the stage wants, in place of those that it does not want any more.
+/// Gives the trees what the stage wants of them; spawns those that are missing, and removes those that are too many. A tree that becomes
+/// another one stays until that is grown.
 pub(super) fn arrange_trees(
     mut commands: Commands,
     workbench: Res<Workbench>,
     season: Res<Season>,
-    trees: Query<(Entity, &StageTree)>,
+    mut trees: Query<(Entity, &mut StageTree, &mut Tree)>,
 ) {
     let wanted = workbench.stage.stands(*season);
-    let mut left = wanted.clone();
-    for (entity, StageTree(stand)) in &trees {
-        match left.iter().position(|other| is_same_tree(other, stand)) {
-            Some(place) => drop(left.remove(place)),
-            None => commands.entity(entity).despawn(),
+    let mut there: Vec<_> = trees.iter_mut().collect();
+    there.sort_by_key(|(_, staged, _)| staged.place);
+    for (place, stand) in wanted.iter().copied().enumerate() {
+        let tree = tree_of(&workbench, &stand);
+        match there.get_mut(place) {
+            Some((_, staged, own)) => {
+                staged.set_if_neq(StageTree { place, stand });
+                own.set_if_neq(tree);
+            }
+            None => {
+                commands.spawn((StageTree { place, stand }, tree, Transform::default()));
+            }
         }
     }
-    for stand in left {
-        commands.spawn((StageTree(stand), tree_of(&workbench, &stand), Transform::default()));
+    for (entity, ..) in there.into_iter().skip(wanted.len()) {
+        commands.entity(entity).despawn();
     }
-}
-
-/// A tree that grows older stays the same one: it is not spawned anew.
-fn is_same_tree(a: &Stand, b: &Stand) -> bool {
-    (a.variant, a.is_saved) == (b.variant, b.is_saved) && a.season_days == b.season_days && a.age_share == b.age_share
 }
 
 fn tree_of(workbench: &Workbench, stand: &Stand) -> Tree {
@@ -82,12 +89,11 @@ pub(super) fn place_trees(
     mut whole_m: Local<[f32; 2]>,
 ) {
     let mut grown: Vec<_> = trees.iter_mut().collect();
-    grown.sort_by(|(StageTree(a), ..), (StageTree(b), ..)| order(a).total_cmp(&order(b)));
+    grown.sort_by_key(|(staged, ..)| staged.place);
     let extents: Vec<[f32; 2]> =
         grown.iter().map(|(_, grown, _)| models.get(&grown.model).map_or([10.0; 2], extent_m)).collect();
     let widths: Vec<f32> = extents.iter().map(|[_, width]| *width).collect();
     let (places, width_m) = places_m(&widths);
-    // Trees that face the eye stand in a row across it.
     for ((_, _, transform), place) in grown.iter_mut().zip(places) {
         transform.set_if_neq(Transform::from_xyz(place, 0.0, 0.0));
     }
@@ -108,11 +114,6 @@ pub(super) fn place_trees(
     let columns = if stage.view == View::Levels { 3.2 } else { 1.0 };
     let [eye, middle] = stage.eye(whole_m[0], whole_m[1] * columns, size.x / size.y, perspective.fov);
     transform.set_if_neq(Transform::from_translation(eye).looking_at(middle, Vec3::Y));
-}
-
-/// From left to right: the saved tree, then by age, season and variant.
-fn order(stand: &Stand) -> f32 {
-    if stand.is_saved { f32::MIN } else { 1e6 * stand.age_share + 1e3 * stand.variant as f32 + stand.season_days }
 }
 
 /// The picture between the panels, in pixels.
@@ -151,7 +152,7 @@ pub(super) fn turn(
     stage.distance = (stage.distance * (1.0 - WHEEL * steps)).clamp(DISTANCES[0], DISTANCES[1]);
 }
 
-/// The species of the two assets.
+/// A species with another number of variants: no more are grown than are shown.
 pub(super) fn with_variants(species: &Species, variants: u32) -> Species {
     Species { variants, ..species.clone() }
 }

@@ -1,6 +1,8 @@
 //! The bars around the picture: which panel, which view, which age and season; and what was done last.
 
-use bevy_egui::egui::{Align, DragValue, Layout, RichText, Slider, ThemePreference, Ui, vec2};
+use bevy_egui::egui::{
+    Align, DragValue, Id, Label, Layout, RichText, Slider, ThemePreference, Ui, WidgetInfo, WidgetType, vec2,
+};
 
 use super::{
     dialogs::Dialog,
@@ -62,7 +64,9 @@ pub fn top_bar(ui: &mut Ui, panel: &mut Panel, dialog: &mut Option<Dialog>) {
             let is_dark = ui.visuals().dark_mode;
             let (name, other) = if is_dark { ("☀", ThemePreference::Light) } else { ("🌙", ThemePreference::Dark) };
             let hint = if is_dark { "Light colours" } else { "Dark colours" };
-            if ui.button(name).on_hover_text(hint).clicked() {
+            let button = ui.button(name).on_hover_text(hint);
+            button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, hint));
+            if button.clicked() {
                 ui.ctx().set_theme(other);
             }
         });
@@ -95,35 +99,35 @@ pub fn stage_bar(ui: &mut Ui, stage: &mut Stage, season: &mut Season, wind: &mut
         ui.set_height(ROW);
         let width = (ui.available_width() - 3.0 * 8.0) / 3.0;
         let mut years = stage.age_share * mature_years;
-        let part = |ui: &mut Ui, name: &str, add: &mut dyn FnMut(&mut Ui)| {
+        let part = |ui: &mut Ui, name: &str, add: &mut dyn FnMut(&mut Ui, Id)| {
             ui.allocate_ui_with_layout(vec2(width, ROW), Layout::left_to_right(Align::Center), |ui| {
                 ui.set_width(width);
-                ui.label(name);
+                let named = ui.label(name).id;
                 ui.spacing_mut().slider_width = (ui.available_width() - 76.0).max(24.0);
-                add(ui);
+                add(ui, named);
             });
         };
-        part(ui, "Age", &mut |ui| {
-            ui.add(Slider::new(&mut years, 1.0..=2.0 * mature_years).show_value(false).logarithmic(true));
+        part(ui, "Age", &mut |ui, named| {
+            ui.add(Slider::new(&mut years, 1.0..=2.0 * mature_years).show_value(false).logarithmic(true)).labelled_by(named);
             ui.add_sized(
                 vec2(64.0, ROW - 4.0),
                 DragValue::new(&mut years).range(1.0..=5000.0).suffix(" a").max_decimals(0),
-            );
+            ).labelled_by(named);
         });
         stage.age_share = years / mature_years;
-        part(ui, "Season", &mut |ui| {
+        part(ui, "Season", &mut |ui, named| {
             let mut year = season.year;
-            ui.add(Slider::new(&mut year, 0.0..=1.0).show_value(false));
+            ui.add(Slider::new(&mut year, 0.0..=1.0).show_value(false)).labelled_by(named);
             if year != season.year {
                 season.year = year;
             }
-            ui.add_sized(vec2(64.0, ROW - 4.0), bevy_egui::egui::Label::new(month(season.year)));
+            ui.add_sized(vec2(64.0, ROW - 4.0), Label::new(month(season.year)));
         });
-        part(ui, "Wind", &mut |ui| {
+        part(ui, "Wind", &mut |ui, named| {
             let mut speed = wind.speed;
-            ui.add(Slider::new(&mut speed, 0.0..=30.0).show_value(false).step_by(0.5));
+            ui.add(Slider::new(&mut speed, 0.0..=30.0).show_value(false).step_by(0.5)).labelled_by(named);
             let drag = DragValue::new(&mut speed).range(0.0..=75.0).suffix(" m/s").max_decimals(1);
-            ui.add_sized(vec2(64.0, ROW - 4.0), drag);
+            ui.add_sized(vec2(64.0, ROW - 4.0), drag).labelled_by(named);
             if speed != wind.speed {
                 wind.speed = speed;
             }
@@ -173,7 +177,7 @@ pub fn status_bar(ui: &mut Ui, session: &Session, facts: &TreeFacts) -> bool {
                     Some(Message::Failed(text)) => (text.as_str(), palette.bad),
                     None => ("", palette.good),
                 };
-                let text = bevy_egui::egui::Label::new(RichText::new(text).color(colour)).truncate();
+                let text = Label::new(RichText::new(text).color(colour)).truncate();
                 ui.add(text);
             });
         });

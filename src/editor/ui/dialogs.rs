@@ -42,8 +42,8 @@ impl PathField {
     }
 
     /// Draws it. Returns whether a file of the list was chosen, or Enter pressed.
-    fn show(&mut self, ui: &mut Ui) -> bool {
-        let edit = ui.add(TextEdit::singleline(&mut self.path).desired_width(460.0).hint_text("Path of a file"));
+    fn show(&mut self, ui: &mut Ui, named: Id) -> bool {
+        let edit = ui.add(TextEdit::singleline(&mut self.path).desired_width(460.0).hint_text("Path of a file")).labelled_by(named);
         let mut is_chosen = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         ui.add_space(4.0);
         ScrollArea::vertical().max_height(260.0).auto_shrink(false).show(ui, |ui| {
@@ -113,9 +113,9 @@ fn with_extension(path: &str) -> String {
 }
 
 fn file_dialog(ui: &mut Ui, title: &str, action: &str, field: &mut PathField, is_done: &mut bool) -> bool {
-    ui.heading(title);
+    let named = ui.heading(title).id;
     ui.add_space(6.0);
-    let mut is_chosen = field.show(ui);
+    let mut is_chosen = field.show(ui, named);
     ui.add_space(6.0);
     ui.horizontal(|ui| {
         is_chosen |= ui.button(RichText::new(action).strong()).clicked();

@@ -8,8 +8,8 @@ use bevy::{
     },
 };
 use bevy_egui::egui::{
-    self, Align, Button, CollapsingHeader, ComboBox, DragValue, Label, Layout, Response, RichText, Slider,
-    SliderClamping, TextEdit, Ui, vec2,
+    self, Align, Button, CollapsingHeader, ComboBox, DragValue, Id, Label, Layout, Response, RichText, Slider,
+    SliderClamping, TextEdit, TextStyle, Ui, vec2,
 };
 
 use super::theme::{LABEL_WIDTH, ROW};
@@ -44,13 +44,15 @@ pub struct Rows<'a> {
     is_changed: &'a dyn Fn(&Field) -> bool,
     /// Where controls begin, points from the left of the screen.
     controls_at: f32,
+    /// Size of labels, points.
+    pub label_size: f32,
     pub actions: Vec<Action>,
 }
 
 impl<'a> Rows<'a> {
     /// Rows of a panel. `is_changed` says of which fields there is a way back.
     pub fn new(ui: &Ui, draft: &'a mut dyn Reflect, is_changed: &'a dyn Fn(&Field) -> bool) -> Self {
-        Self { draft, is_changed, controls_at: ui.max_rect().left() + LABEL_WIDTH, actions: Vec::new() }
+        Self { draft, is_changed, controls_at: ui.max_rect().left() + LABEL_WIDTH, label_size: TextStyle::Body.resolve(ui.style()).size, actions: Vec::new() }
     }
 
     /// All rows of a section, with the sections in it folded.
@@ -101,11 +103,11 @@ impl<'a> Rows<'a> {
             let control = ui
                 .allocate_ui_with_layout(vec2(width, ROW), Layout::left_to_right(Align::Center), |ui| {
                     ui.set_width(width);
-                    self.control(ui, field, label)
+                    self.control(ui, field, label, named.id)
                 })
                 .inner;
             if let Some(control) = control {
-                control.labelled_by(named.id).on_hover_ui(|ui| tooltip(ui, field));
+                control.on_hover_ui(|ui| tooltip(ui, field));
             }
             let back = Button::new(RichText::new("↺")).frame(false).min_size(vec2(BACK_WIDTH, ROW - 4.0));
             let back =
@@ -119,7 +121,8 @@ impl<'a> Rows<'a> {
 
     fn label(&self, ui: &mut Ui, field: &Field, label: &str, is_changed: bool) -> Response {
         let width = (self.controls_at - ui.cursor().left() - ui.spacing().item_spacing.x).max(40.0);
-        let text = if is_changed { RichText::new(label).strong().italics() } else { RichText::new(label) };
+        let text = RichText::new(label).size(self.label_size);
+        let text = if is_changed { text.strong().italics() } else { text };
         let layout = Layout::left_to_right(Align::Center);
         let named = ui.allocate_ui_with_layout(vec2(width, ROW), layout, |ui| {
             ui.set_width(width);
@@ -128,12 +131,13 @@ impl<'a> Rows<'a> {
         named.inner.on_hover_ui(|ui| tooltip(ui, field))
     }
 
-    fn control(&mut self, ui: &mut Ui, field: &Field, label: &str) -> Option<Response> {
+    /// `named` is the label that tells its name.
+    fn control(&mut self, ui: &mut Ui, field: &Field, label: &str, named: Id) -> Option<Response> {
         let draft = &mut *self.draft;
         let value = draft.reflect_path_mut(field.path.as_str()).ok()?;
         let (response, is_set) = match &field.kind {
-            Kind::Number | Kind::Whole => number_control(ui, field, value),
-            Kind::Seed => seed_control(ui, value),
+            Kind::Number | Kind::Whole => number_control(ui, field, value, named),
+            Kind::Seed => seed_control(ui, value, named),
             Kind::Switch => {
                 let on = value.try_downcast_mut::<bool>()?;
                 let response = ui.checkbox(on, "");
@@ -147,14 +151,14 @@ impl<'a> Rows<'a> {
                 (response, is_set)
             }
             Kind::Colour => colour_control(ui, value.try_downcast_mut::<[f32; 3]>()?),
-            Kind::Direction => direction_control(ui, value.try_downcast_mut::<Dir2>()?),
+            Kind::Direction => direction_control(ui, value.try_downcast_mut::<Dir2>()?, named),
             Kind::Choice(choices) => {
                 let (response, chosen) = choice_control(ui, field, value, choices);
                 if let Some(choice) =
                     chosen.filter(|choice| choices.iter().any(|any| any.has_settings) || choice.has_settings)
                 {
                     self.actions.push(Action::Variant(field.clone(), choice.name));
-                    return Some(response);
+                    return Some(response.labelled_by(named));
                 }
                 let unit = |choice: &Choice| DynamicEnum::new(choice.name, DynamicVariant::Unit);
                 (response, chosen.is_some_and(|choice| value.try_apply(&unit(choice)).is_ok()))
@@ -163,7 +167,7 @@ impl<'a> Rows<'a> {
         if is_set {
             self.actions.push(Action::Changed(label.to_owned()));
         }
-        Some(response)
+        Some(response.labelled_by(named))
     }
 }
 
@@ -188,7 +192,7 @@ fn rounded(number: f64) -> f64 {
     (number * scale).round() / scale
 }
 
-fn number_control(ui: &mut Ui, field: &Field, value: &mut dyn PartialReflect) -> (Response, bool) {
+fn number_control(ui: &mut Ui, field: &Field, value: &mut dyn PartialReflect, named: Id) -> (Response, bool) {
     let factor = field.unit.map_or(1.0, |unit| unit.factor);
     let before = rounded(number(value).unwrap_or_default() * factor);
     let mut shown = before;
@@ -228,7 +232,7 @@ fn number_control(ui: &mut Ui, field: &Field, value: &mut dyn PartialReflect) ->
         drag = drag.suffix(if unit.symbol == "°" { "°".into() } else { format!(" {}", unit.symbol) });
     }
     drag = if is_whole { drag.fixed_decimals(0) } else { drag.max_decimals(decimals(finite_span)) };
-    let dragged = ui.add_sized(vec2(NUMBER_WIDTH, ROW - 4.0), drag);
+    let dragged = ui.add_sized(vec2(NUMBER_WIDTH, ROW - 4.0), drag).labelled_by(named);
     let is_set = shown != before && shown.is_finite();
     if is_set {
         let clamped = range.map_or(shown, |range| shown.clamp(*range.start(), *range.end()));
@@ -242,7 +246,7 @@ fn decimals(span: f64) -> usize {
     (4 - span.abs().max(1e-3).log10().floor() as i32).clamp(1, 5) as usize
 }
 
-fn seed_control(ui: &mut Ui, value: &mut dyn PartialReflect) -> (Response, bool) {
+fn seed_control(ui: &mut Ui, value: &mut dyn PartialReflect, named: Id) -> (Response, bool) {
     let Some(seed) = value.try_downcast_mut::<u64>() else { return (ui.label("?"), false) };
     let before = *seed;
     let gap = ui.spacing().item_spacing.x;
@@ -251,7 +255,7 @@ fn seed_control(ui: &mut Ui, value: &mut dyn PartialReflect) -> (Response, bool)
     if next.clicked() {
         *seed = seed.wrapping_add(1);
     }
-    let drag = ui.add_sized(vec2(NUMBER_WIDTH, ROW - 4.0), DragValue::new(seed).update_while_editing(false));
+    let drag = ui.add_sized(vec2(NUMBER_WIDTH, ROW - 4.0), DragValue::new(seed).update_while_editing(false)).labelled_by(named);
     (next | drag, *seed != before)
 }
 
@@ -267,14 +271,14 @@ fn colour_control(ui: &mut Ui, colour: &mut [f32; 3]) -> (Response, bool) {
     (response, is_set)
 }
 
-fn direction_control(ui: &mut Ui, direction: &mut Dir2) -> (Response, bool) {
+fn direction_control(ui: &mut Ui, direction: &mut Dir2, named: Id) -> (Response, bool) {
     let before = rounded(f64::from(direction.y.atan2(direction.x).to_degrees().rem_euclid(360.0)));
     let mut degrees = before;
     let gap = ui.spacing().item_spacing.x;
     ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH - gap).max(20.0);
     let slider = ui.add(Slider::new(&mut degrees, 0.0..=360.0).show_value(false).step_by(1.0));
     let drag = DragValue::new(&mut degrees).range(0.0..=360.0).suffix("°").max_decimals(0).update_while_editing(false);
-    let drag = ui.add_sized(vec2(NUMBER_WIDTH, ROW - 4.0), drag);
+    let drag = ui.add_sized(vec2(NUMBER_WIDTH, ROW - 4.0), drag).labelled_by(named);
     let is_set = degrees != before;
     if is_set {
         *direction = Dir2::new(Vec2::from_angle((degrees as f32).to_radians())).unwrap_or(*direction);

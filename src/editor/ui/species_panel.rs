@@ -23,8 +23,12 @@ pub fn species_panel(ui: &mut Ui, session: &mut Session, filter: &mut String, di
     file_buttons(ui, session, dialog);
     session_buttons(ui, session);
     warnings(ui, session);
-    let find = TextEdit::singleline(filter).hint_text("Find a field").desired_width(f32::INFINITY);
-    ui.add(find).on_hover_text("Shows the fields whose name or documentation has these letters");
+    ui.horizontal(|ui| {
+        let named = ui.label("Find a field");
+        let find = TextEdit::singleline(filter).desired_width(f32::INFINITY);
+        let hint = "Shows the fields whose name or documentation has these letters";
+        ui.add(find).labelled_by(named.id).on_hover_text(hint);
+    });
     ui.add_space(2.0);
     ui.separator();
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| fields(ui, session, filter));

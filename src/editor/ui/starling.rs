@@ -47,15 +47,20 @@ const MENUS: [Menu; 3] = [
     ),
 ];
 
+/// Size of words in capitals, points.
+const CAPITALS: f32 = 11.5;
+
 /// Draws the menus, and what the program has beyond them.
 pub fn menus(rows: &mut Rows, ui: &mut Ui, crown: &Section, now: &ImpressionistCrown) {
     for (menu, commands) in MENUS {
         CollapsingHeader::new(menu).default_open(true).show(ui, |ui| {
+            let usual = std::mem::replace(&mut rows.label_size, CAPITALS);
             for (word, name) in commands {
                 if let Some(field) = field(crown, name) {
                     rows.labelled(ui, field, word);
                 }
             }
+            rows.label_size = usual;
             if menu == "PROPERTIES" {
                 swatches(ui, now);
             }

@@ -7,9 +7,9 @@ pub const ROW: f32 = 24.0;
 /// Between a panel's edge and what is in it, points.
 pub const MARGIN: i8 = 10;
 /// Width of the panel with the fields, points.
-pub const PANEL_WIDTH: f32 = 384.0;
+pub const PANEL_WIDTH: f32 = 400.0;
 /// Where the controls begin, from the left edge of the panel's inside, points.
-pub const LABEL_WIDTH: f32 = 140.0;
+pub const LABEL_WIDTH: f32 = 160.0;
 
 /// Colours that the visuals have no place for.
 #[derive(Clone, Copy)]
