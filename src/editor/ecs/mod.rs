@@ -13,11 +13,11 @@ use self::{
     manners::is_open,
     measure::{Measuring, measure_tip, measure_wind, note_costs, show_arrows},
     mesh::{begin_diagrams, hide_trees, show_diagrams},
-    show_species::{Applied, apply_species, note_tree},
+    show_species::{Applied, apply_species, has_species_to_show, note_tree},
     turntable::{arrange_trees, place_trees, turn},
     workbench::{Workbench, draw_panels},
 };
-use crate::{plugin_checks::require_plugin, render::TreeRenderPlugin, schedule::WindwoodSystems};
+use crate::{plugin_checks::require_plugin, render::TreeRenderPlugin, schedule::WindwoodSystems, timing::timed};
 use bevy::prelude::*;
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass};
 use std::path::PathBuf;
@@ -53,17 +53,20 @@ impl Plugin for EditorPlugin {
             .init_resource::<Applied>()
             .init_resource::<Measuring>()
             .add_plugins(manners::plugin)
-            .add_systems(EguiPrimaryContextPass, draw_panels.run_if(is_open))
             .add_systems(PreUpdate, scale_panels.run_if(is_open))
             .add_systems(
                 Update,
                 (
                     switch_camera,
-                    (apply_species, (measure_wind, measure_tip, note_costs).run_if(is_open), show_arrows)
+                    (apply_species.run_if(has_species_to_show), (measure_wind, measure_tip).run_if(is_open), show_arrows)
                         .before(WindwoodSystems::Bake),
                 ),
             )
-            .add_systems(PostUpdate, note_tree.run_if(is_open));
+            .add_systems(PostUpdate, note_tree.run_if(is_open))
+            .add_systems(Last, note_costs.run_if(is_open));
+        // What the panels cost is told with the rest.
+        let draw_panels = timed!(app, draw_panels).run_if(is_open);
+        app.add_systems(EguiPrimaryContextPass, draw_panels);
         if self.turntable {
             app.add_systems(Update, (turn, arrange_trees).chain().before(WindwoodSystems::Bake)).add_systems(
                 Update,

@@ -18,6 +18,8 @@ pub(super) struct Applied {
     saved: Option<Species>,
     /// Since when a change is on its way to the picture.
     since: Option<Instant>,
+    /// Whether the asset is not yet what it is to be.
+    is_behind: bool,
     /// The species of the picture: what a cancelled change goes back to.
     good: Option<Species>,
 }
@@ -47,11 +49,17 @@ pub(super) fn apply_species(
             applied.shown = Some(wanted);
         }
     }
+    applied.is_behind = applied.shown.as_ref() != Some(&with_variants(workbench.species(), variants));
     let saved = with_variants(workbench.session.saved(), variants);
     if workbench.stage.compares && applied.saved.as_ref() != Some(&saved) {
         set(&mut assets, &workbench.saved, saved.clone());
         applied.saved = Some(saved);
     }
+}
+
+/// Whether there is anything to show: nothing is compared while the workbench is closed and its last change is shown.
+pub(super) fn has_species_to_show(workbench: Res<Workbench>, applied: Res<Applied>) -> bool {
+    workbench.is_open || (applied.is_behind && workbench.species().validate().is_ok())
 }
 
 fn set(assets: &mut Assets<Species>, handle: &Handle<Species>, species: Species) {

@@ -138,8 +138,8 @@ pub(super) struct Edited<'w, 's> {
 }
 
 /// Draws the panels, and takes over what was changed in them. What was not changed does not count as changed.
-pub(super) fn draw_panels(mut contexts: EguiContexts, mut workbench: ResMut<Workbench>, edited: Edited) -> Result {
-    let context = contexts.ctx_mut()?.clone();
+pub(super) fn draw_panels(mut contexts: EguiContexts, mut workbench: ResMut<Workbench>, edited: Edited) {
+    let Ok(context) = contexts.ctx_mut().cloned() else { return };
     let Edited { mut season, mut wind, mut levels, mut forests, active_wind, sway } = edited;
     let whole = UiBuilder::new().layer_id(LayerId::background()).max_rect(context.viewport_rect());
     let mut ui = Ui::new(context.clone(), Id::new("windwood workbench"), whole);
@@ -182,5 +182,4 @@ pub(super) fn draw_panels(mut contexts: EguiContexts, mut workbench: ResMut<Work
     if let Some((mut forest, new)) = forest.zip(new_forest) {
         forest.set_if_neq(new);
     }
-    Ok(())
 }

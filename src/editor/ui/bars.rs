@@ -1,7 +1,7 @@
 //! The bars around the picture: which panel, which view, which age and season; and what was done last.
 
 use bevy_egui::egui::{
-    Align, DragValue, Id, Label, Layout, RichText, Slider, ThemePreference, Ui, WidgetInfo, WidgetType, vec2,
+    Align, DragValue, Id, Label, Layout, RichText, Slider, SliderClamping, ThemePreference, Ui, WidgetInfo, WidgetType, vec2,
 };
 
 use super::{
@@ -98,7 +98,8 @@ pub fn stage_bar(ui: &mut Ui, stage: &mut Stage, season: &mut Season, wind: &mut
     ui.horizontal(|ui| {
         ui.set_height(ROW);
         let width = (ui.available_width() - 3.0 * 8.0) / 3.0;
-        let mut years = stage.age_share * mature_years;
+        let before_years = stage.age_share * mature_years;
+        let mut years = before_years;
         let part = |ui: &mut Ui, name: &str, add: &mut dyn FnMut(&mut Ui, Id)| {
             ui.allocate_ui_with_layout(vec2(width, ROW), Layout::left_to_right(Align::Center), |ui| {
                 ui.set_width(width);
@@ -108,16 +109,20 @@ pub fn stage_bar(ui: &mut Ui, stage: &mut Stage, season: &mut Season, wind: &mut
             });
         };
         part(ui, "Age", &mut |ui, named| {
-            ui.add(Slider::new(&mut years, 1.0..=2.0 * mature_years).show_value(false).logarithmic(true)).labelled_by(named);
+            let slider = Slider::new(&mut years, 1.0..=2.0 * mature_years).logarithmic(true);
+            ui.add(bare(slider)).labelled_by(named);
             ui.add_sized(
                 vec2(64.0, ROW - 4.0),
-                DragValue::new(&mut years).range(1.0..=5000.0).suffix(" a").max_decimals(0),
-            ).labelled_by(named);
+                DragValue::new(&mut years).range(1.0..=5000.0).clamp_existing_to_range(false).suffix(" a").max_decimals(0),
+            )
+            .labelled_by(named);
         });
-        stage.age_share = years / mature_years;
+        if years != before_years {
+            stage.age_share = years / mature_years;
+        }
         part(ui, "Season", &mut |ui, named| {
             let mut year = season.year;
-            ui.add(Slider::new(&mut year, 0.0..=1.0).show_value(false)).labelled_by(named);
+            ui.add(bare(Slider::new(&mut year, 0.0..=1.0))).labelled_by(named);
             if year != season.year {
                 season.year = year;
             }
@@ -125,7 +130,7 @@ pub fn stage_bar(ui: &mut Ui, stage: &mut Stage, season: &mut Season, wind: &mut
         });
         part(ui, "Wind", &mut |ui, named| {
             let mut speed = wind.speed;
-            ui.add(Slider::new(&mut speed, 0.0..=30.0).show_value(false).step_by(0.5)).labelled_by(named);
+            ui.add(bare(Slider::new(&mut speed, 0.0..=30.0).step_by(0.5))).labelled_by(named);
             let drag = DragValue::new(&mut speed).range(0.0..=75.0).suffix(" m/s").max_decimals(1);
             ui.add_sized(vec2(64.0, ROW - 4.0), drag).labelled_by(named);
             if speed != wind.speed {
@@ -133,6 +138,11 @@ pub fn stage_bar(ui: &mut Ui, stage: &mut Stage, season: &mut Season, wind: &mut
             }
         });
     });
+}
+
+/// A slider without a value of its own. What it cannot show, such as a hurricane, it leaves as it is.
+fn bare(slider: Slider) -> Slider {
+    slider.show_value(false).clamping(SliderClamping::Edits)
 }
 
 /// The month of a time of the year, which begins at midwinter, the 21st of December.

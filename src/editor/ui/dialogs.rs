@@ -43,7 +43,9 @@ impl PathField {
 
     /// Draws it. Returns whether a file of the list was chosen, or Enter pressed.
     fn show(&mut self, ui: &mut Ui, named: Id) -> bool {
-        let edit = ui.add(TextEdit::singleline(&mut self.path).desired_width(460.0).hint_text("Path of a file")).labelled_by(named);
+        let edit = ui
+            .add(TextEdit::singleline(&mut self.path).desired_width(460.0).hint_text("Path of a file"))
+            .labelled_by(named);
         let mut is_chosen = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         ui.add_space(4.0);
         ScrollArea::vertical().max_height(260.0).auto_shrink(false).show(ui, |ui| {

@@ -52,7 +52,13 @@ pub struct Rows<'a> {
 impl<'a> Rows<'a> {
     /// Rows of a panel. `is_changed` says of which fields there is a way back.
     pub fn new(ui: &Ui, draft: &'a mut dyn Reflect, is_changed: &'a dyn Fn(&Field) -> bool) -> Self {
-        Self { draft, is_changed, controls_at: ui.max_rect().left() + LABEL_WIDTH, label_size: TextStyle::Body.resolve(ui.style()).size, actions: Vec::new() }
+        Self {
+            draft,
+            is_changed,
+            controls_at: ui.max_rect().left() + LABEL_WIDTH,
+            label_size: TextStyle::Body.resolve(ui.style()).size,
+            actions: Vec::new(),
+        }
     }
 
     /// All rows of a section, with the sections in it folded.
@@ -194,9 +200,10 @@ fn rounded(number: f64) -> f64 {
 
 fn number_control(ui: &mut Ui, field: &Field, value: &mut dyn PartialReflect, named: Id) -> (Response, bool) {
     let factor = field.unit.map_or(1.0, |unit| unit.factor);
-    let before = rounded(number(value).unwrap_or_default() * factor);
-    let mut shown = before;
     let is_whole = field.kind == Kind::Whole;
+    let before = number(value).unwrap_or_default() * factor;
+    let before = if is_whole { before } else { rounded(before) };
+    let mut shown = before;
     let range = field.range.as_ref().map(|range| rounded(range.start() * factor)..=rounded(range.end() * factor));
     let span = range.as_ref().map_or(1.0, |range| range.end() - range.start());
     let finite_span = if span < ENDLESS { span } else { 10.0 * before.abs().max(1.0) };
@@ -255,7 +262,9 @@ fn seed_control(ui: &mut Ui, value: &mut dyn PartialReflect, named: Id) -> (Resp
     if next.clicked() {
         *seed = seed.wrapping_add(1);
     }
-    let drag = ui.add_sized(vec2(NUMBER_WIDTH, ROW - 4.0), DragValue::new(seed).update_while_editing(false)).labelled_by(named);
+    let drag = ui
+        .add_sized(vec2(NUMBER_WIDTH, ROW - 4.0), DragValue::new(seed).update_while_editing(false))
+        .labelled_by(named);
     (next | drag, *seed != before)
 }
 
@@ -276,7 +285,8 @@ fn direction_control(ui: &mut Ui, direction: &mut Dir2, named: Id) -> (Response,
     let mut degrees = before;
     let gap = ui.spacing().item_spacing.x;
     ui.spacing_mut().slider_width = (ui.available_width() - NUMBER_WIDTH - gap).max(20.0);
-    let slider = ui.add(Slider::new(&mut degrees, 0.0..=360.0).show_value(false).step_by(1.0));
+    let slider = Slider::new(&mut degrees, 0.0..=360.0).show_value(false).step_by(1.0);
+    let slider = ui.add(slider.clamping(SliderClamping::Edits));
     let drag = DragValue::new(&mut degrees).range(0.0..=360.0).suffix("°").max_decimals(0).update_while_editing(false);
     let drag = ui.add_sized(vec2(NUMBER_WIDTH, ROW - 4.0), drag).labelled_by(named);
     let is_set = degrees != before;

@@ -132,7 +132,7 @@ impl Desk {
             let by: Vec<String> = node.labelled_by().iter().filter_map(|id| nodes.get(id)).map(own_name).collect();
             if by.is_empty() { own_name(node) } else { by.join(" ") }
         };
-                let place = |node: &Node| {
+        let place = |node: &Node| {
             let at = node.bounds()?;
             Some(Rect::from_min_max(pos2(at.x0 as f32, at.y0 as f32), pos2(at.x1 as f32, at.y1 as f32)))
         };
@@ -277,9 +277,7 @@ fn fields_are_found_by_their_letters_and_reset() {
     desk.state.filter = "no such field".into();
     desk.frame(Vec::new());
     assert!(
-        desk.nodes()
-            .iter()
-            .all(|(role, name, at)| *role != Role::Slider || at.left() > PANEL_WIDTH || name.is_empty())
+        desk.nodes().iter().all(|(role, name, at)| *role != Role::Slider || at.left() > PANEL_WIDTH || name.is_empty())
     );
 }
 
