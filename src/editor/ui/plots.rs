@@ -79,9 +79,9 @@ pub fn points(bands: &[Band]) -> Vec<[f64; 2]> {
     bands.iter().map(|band| [band.frequency_hz, band.value]).collect()
 }
 
-/// Grid lines at every power of ten.
+/// Grid lines at every power of ten that is in sight.
 fn decades(input: GridInput) -> Vec<GridMark> {
-    let (low, high) = (input.bounds.0.floor().max(-40.0) as i32, input.bounds.1.ceil().min(40.0) as i32);
+    let (low, high) = (input.bounds.0.ceil().max(-40.0) as i32, input.bounds.1.floor().min(40.0) as i32);
     (low..=high).map(|decade| GridMark { value: f64::from(decade), step_size: 1.0 }).collect()
 }
 

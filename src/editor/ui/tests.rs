@@ -68,7 +68,9 @@ impl Desk {
             time_s: 0.0,
         };
         // Panels know their sizes after the first frame.
-        (0..3).for_each(|_| drop(desk.frame(Vec::new())));
+        for _ in 0..3 {
+            desk.frame(Vec::new());
+        }
         desk
     }
 
@@ -192,7 +194,9 @@ fn no_text_is_cut_off() {
             desk.size = size;
             for panel in [Panel::Species, Panel::Wind, Panel::Levels] {
                 desk.state.panel = panel;
-                (0..3).for_each(|_| drop(desk.frame(Vec::new())));
+                for _ in 0..3 {
+                    desk.frame(Vec::new());
+                }
                 let cut = desk.clipped_texts();
                 assert!(cut.is_empty(), "{species}, {panel:?}, {size:?}: {cut:#?}");
             }
@@ -207,7 +211,9 @@ fn screen_readers_are_told_a_name_for_every_control() {
         desk.context.set_theme(ThemePreference::from(theme));
         for panel in [Panel::Species, Panel::Wind, Panel::Levels] {
             desk.state.panel = panel;
-            (0..2).for_each(|_| drop(desk.frame(Vec::new())));
+            for _ in 0..2 {
+                desk.frame(Vec::new());
+            }
             let nodes = desk.nodes();
             let controls = nodes.iter().filter(|(role, ..)| ROLES_WITH_NAMES.contains(role));
             assert!(controls.clone().count() > 20, "{panel:?}");
@@ -331,14 +337,18 @@ fn nothing_else_is_done_while_a_question_waits() {
     let mut desk = Desk::new("oak");
     desk.press("Randomise");
     assert!(!desk.session.may_quit());
-    (0..2).for_each(|_| drop(desk.frame(Vec::new())));
+    for _ in 0..2 {
+        desk.frame(Vec::new());
+    }
     let changed = desk.session.species().clone();
     desk.key(Modifiers::COMMAND, Key::Z);
     assert_eq!(*desk.session.species(), changed);
     desk.press("Cancel");
     assert_eq!(desk.session.question, None);
     assert!(!desk.session.may_quit());
-    (0..2).for_each(|_| drop(desk.frame(Vec::new())));
+    for _ in 0..2 {
+        desk.frame(Vec::new());
+    }
     let at = desk.find(Role::Button, "Do not save").center();
     desk.frame(vec![Event::PointerMoved(at)]);
     let press =
@@ -386,7 +396,9 @@ fn another_model_of_growth_is_chosen_from_its_list() {
     let mut desk = Desk::new("oak");
     let combo = desk.find(Role::ComboBox, "Growth").center();
     desk.click(combo);
-    (0..2).for_each(|_| drop(desk.frame(Vec::new())));
+    for _ in 0..2 {
+        desk.frame(Vec::new());
+    }
     desk.press("Impressionist");
     assert!(matches!(desk.session.species().growth, Growth::Impressionist(_)));
     desk.key(Modifiers::COMMAND, Key::Z);
