@@ -44,7 +44,7 @@ impl Scene for MeadowScene {
         Transform::from_translation(eye).looking_at(target, Vec3::Y)
     }
 
-    fn camera_effects() -> impl Bundle {
+    fn camera_effects(&self) -> impl Bundle + use<> {
         dusk::camera_effects()
     }
 

@@ -12,8 +12,12 @@ use crate::{
     },
     undergrowth, window,
 };
-use bevy::prelude::*;
-use bevy_windwood::{prelude::*, scatter::ForestPlan};
+use bevy::{camera::Exposure, prelude::*};
+use bevy_windwood::{prelude::*, scatter::ForestPlan, terrain::Cover};
+use std::sync::Arc;
+
+/// Under trees there is a fifth of the light: an eye that gets used to it sees some two stops more.
+const INSIDE: Exposure = Exposure { ev100: Exposure::EV100_BLENDER - 1.4 };
 
 /// What the scene is made from.
 #[derive(Resource)]
@@ -68,8 +72,12 @@ impl Scene for ForestScene {
     }
 
     /// Clear among the trees, blue on the far ridges.
-    fn camera_effects() -> impl Bundle {
-        haze(6500.0)
+    fn camera_effects(&self) -> impl Bundle + use<> {
+        let exposure = match self.options.view {
+            View::Inside => INSIDE,
+            View::Hillside | View::Edge | View::Aerial => Exposure::default(),
+        };
+        (haze(6500.0), exposure)
     }
 
     fn plugin(app: &mut App) {
@@ -95,7 +103,7 @@ fn spawn_scene(
     mut plans: ResMut<Assets<ForestPlan>>,
 ) {
     let ForestScene { options, landscape } = &*scene;
-    let mut cover = None;
+    let cover: Option<Arc<dyn Cover>>;
     let mut look = GroundLook::default();
     if let Some(extent_m) = options.extent {
         let plan = large::plan(options, extent_m);
@@ -107,6 +115,9 @@ fn spawn_scene(
     } else {
         let places = small::places(landscape, options.trees, options.scene.wind.seed);
         small::spawn_trees(&mut commands, &assets, &places);
+        // All trees are drawn, from wherever one looks: the ground never takes the colour of crowns.
+        look.canopy_from_m = 1e5;
+        cover = Some(Arc::new(small::Floor::new(options.trees)));
         undergrowth::spawn_undergrowth(&mut commands, &mut plans, landscape, options.trees, options.scene.wind.seed);
         meadow::spawn_meadow(&mut commands, landscape, options.trees, options.scene.wind.seed);
     }

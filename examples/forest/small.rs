@@ -1,8 +1,8 @@
 //! The small forest, tree by tree: firs uphill, oaks downhill, in groups, and a meadow below them.
 
 use crate::support::landscape::Landscape;
-use bevy::prelude::*;
-use bevy_windwood::prelude::*;
+use bevy::{math::DVec2, prelude::*};
+use bevy_windwood::{prelude::*, terrain::Cover};
 use noise::{NoiseFn, OpenSimplex};
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 
@@ -61,6 +61,27 @@ pub fn spawn_trees(commands: &mut Commands, assets: &AssetServer, places: &[Plac
     for place in places {
         let species = if place.is_fir { fir.clone() } else { oak.clone() };
         commands.spawn((Tree::new(species), place.transform));
+    }
+}
+
+/// The floor of the wood, which is littered up to its edge.
+pub struct Floor {
+    half_m: f32,
+}
+
+impl Floor {
+    /// That of a wood of so many trees.
+    pub fn new(trees: u32) -> Self {
+        Self { half_m: half_side_m(trees) }
+    }
+}
+
+impl Cover for Floor {
+    fn share(&self, place: DVec2) -> f32 {
+        /// Width of the edge, m.
+        const EDGE_M: f32 = 6.0;
+        let inside_m = self.half_m - place.abs().max_element() as f32;
+        0.8 * (inside_m / EDGE_M).clamp(0.0, 1.0)
     }
 }
 

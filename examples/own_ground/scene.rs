@@ -50,7 +50,7 @@ impl Scene for OwnGroundScene {
         Transform::from_translation(above(52.0, 60.0, 4.5)).looking_at(above(6.0, 18.0, 3.0), Vec3::Y)
     }
 
-    fn camera_effects() -> impl Bundle {
+    fn camera_effects(&self) -> impl Bundle + use<> {
         haze(2500.0)
     }
 

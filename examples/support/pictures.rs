@@ -91,9 +91,10 @@ fn spawn_camera<S: Scene>(app: &mut App) -> Handle<Image> {
     let size = app.world().resource::<S>().options().image.render_size();
     let target = capture::target(app, size);
     let world = app.world_mut();
-    let transform = world.resource::<S>().camera_transform();
+    let scene = world.resource::<S>();
+    let (transform, effects) = (scene.camera_transform(), scene.camera_effects());
     let projection = Projection::Perspective(PerspectiveProjection { far: FAR_M, ..default() });
-    world.spawn((capture::camera(&target), projection, transform, S::camera_effects()));
+    world.spawn((capture::camera(&target), projection, transform, effects));
     target
 }
 

@@ -23,7 +23,7 @@ pub trait Scene: Resource + Sized {
     fn camera_transform(&self) -> Transform;
 
     /// Components of every camera besides projection and target: fog, exposure.
-    fn camera_effects() -> impl Bundle;
+    fn camera_effects(&self) -> impl Bundle + use<Self>;
 
     /// Adds the system that spawns everything but the camera.
     fn plugin(app: &mut App);

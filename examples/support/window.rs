@@ -28,7 +28,7 @@ fn spawn_camera<S: Scene>(mut commands: Commands, scene: Res<S>) {
         Projection::Perspective(PerspectiveProjection { far: FAR_M, ..default() }),
         scene.camera_transform(),
         FreeCamera { walk_speed, run_speed, ..default() },
-        S::camera_effects(),
+        scene.camera_effects(),
     ));
 }
 

@@ -61,7 +61,7 @@ impl Scene for TerrainScene {
     }
 
     /// Clear for kilometres, and blue at the horizon.
-    fn camera_effects() -> impl Bundle {
+    fn camera_effects(&self) -> impl Bundle + use<> {
         haze(19_000.0)
     }
 

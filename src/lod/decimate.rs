@@ -41,7 +41,8 @@ pub fn decimate(model: &TreeModel, decimation: &Decimation) -> DecimatedMeshes {
 }
 
 /// The branches whose root has at least a radius, m, and whose parents have so, too.
-fn thick_wood(wood: &WoodVertices, skeleton: &Skeleton, least_radius_m: f32) -> WoodVertices {
+#[must_use]
+pub(crate) fn thick_wood(wood: &WoodVertices, skeleton: &Skeleton, least_radius_m: f32) -> WoodVertices {
     let stays = thick_beams(skeleton, least_radius_m);
     let mut out = WoodVertices::default();
     for tube in tubes(&wood.indices) {

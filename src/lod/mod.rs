@@ -24,6 +24,7 @@ mod settings;
 mod tests;
 
 pub use bake::scene::Scene;
+pub(crate) use decimate::thick_wood;
 pub use decimate::{DecimatedMeshes, decimate, prunable_radius_m};
 pub use impostor::{atlas::ImpostorAtlas, frame::ImpostorFrame, sway::ImpostorSway};
 pub use paper::{

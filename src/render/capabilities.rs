@@ -8,6 +8,7 @@ use bevy::{
         batching::gpu_preprocessing::{GpuPreprocessingMode, GpuPreprocessingSupport},
         render_resource::WgpuLimits,
         renderer::RenderDevice,
+        settings::WgpuFeatures,
     },
 };
 
@@ -20,6 +21,8 @@ pub struct RenderCapabilities {
     pub culls_on_gpu: bool,
     /// Beams that can be posed at once, over all trees that are seen; trees beyond that stand still.
     pub max_poses: u32,
+    /// Whether textures may be compressed in blocks (BC1 to BC4).
+    pub reads_compressed_textures: bool,
     /// Size of the largest table that a shader can read, bytes.
     pub max_table_bytes: u64,
 }
@@ -52,6 +55,8 @@ impl RenderCapabilities {
         // Poses have two halves, and half as many again in reserve.
         let max_table_bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let max_poses = u32::try_from(max_table_bytes / (3 * POSE_BYTES as u64)).unwrap_or(u32::MAX);
-        Some(Self { sways, culls_on_gpu, max_poses, max_table_bytes })
+        let features = render_world.get_resource::<RenderDevice>()?.features();
+        let reads_compressed_textures = features.contains(WgpuFeatures::TEXTURE_COMPRESSION_BC);
+        Some(Self { sways, culls_on_gpu, max_poses, reads_compressed_textures, max_table_bytes })
     }
 }

@@ -4,6 +4,7 @@ use super::{
     buffers::{buffer_writes, sway_buffers::SwayBuffers},
     capabilities::RenderCapabilities,
     draw::{
+        bare::redraw_bare_trees,
         bounds::fit_tree_bounds,
         components::DrawnTree,
         layers::copy_render_layers,
@@ -99,6 +100,7 @@ impl Plugin for TreeRenderPlugin {
             update_lod_viewers,
             select_lods,
             restore_lost_meshes,
+            redraw_bare_trees,
             update_tree_meshes,
             copy_render_layers
         );

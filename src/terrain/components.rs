@@ -108,8 +108,10 @@ pub struct GroundLook {
     pub rock: [f32; 3],
     /// Snow.
     pub snow: [f32; 3],
-    /// What lies under trees.
+    /// What lies under trees, most of it: leaves that have rotted for some time.
     pub litter: [f32; 3],
+    /// Leaves that have come down lately.
+    pub pale_litter: [f32; 3],
     /// Crowns seen from afar.
     pub canopy: [f32; 3],
     /// Slopes at which earth shows between the grass, and at which there is only rock. units: degrees, domain: 0 to 90.
@@ -137,7 +139,8 @@ impl Default for GroundLook {
             earth: [0.33, 0.29, 0.23],
             rock: [0.44, 0.43, 0.42],
             snow: [0.93, 0.95, 0.98],
-            litter: [0.29, 0.24, 0.15],
+            litter: [0.29, 0.23, 0.16],
+            pale_litter: [0.52, 0.41, 0.26],
             canopy: [0.11, 0.165, 0.095],
             bare_slope_deg: [27.0, 40.0],
             grass_line_m: 1e5,
@@ -162,6 +165,7 @@ impl GroundLook {
             ("rock", self.rock),
             ("snow", self.snow),
             ("litter", self.litter),
+            ("pale_litter", self.pale_litter),
             ("canopy", self.canopy),
         ];
         for (field, colour) in colours {

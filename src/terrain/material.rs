@@ -1,8 +1,15 @@
 //! The material of the ground.
 
-use super::components::GroundLook;
-use crate::render::pipeline::specialize;
+use super::{components::GroundLook, ground_texture::ground_texture, litter_texture::litter_texture};
+use crate::{
+    render::{
+        pipeline::specialize,
+        texture_image::{ALL_MIPS, image},
+    },
+    texture::TextureData,
+};
 use bevy::{
+    image::ImageAddressMode,
     material::OpaqueRendererMethod,
     mesh::{MeshVertexAttribute, MeshVertexBufferLayoutRef, VertexFormat},
     pbr::{ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline},
@@ -26,6 +33,23 @@ pub struct GroundExtension {
     #[texture(101)]
     #[sampler(102)]
     detail: Handle<Image>,
+    #[texture(103)]
+    litter: Handle<Image>,
+}
+
+/// The textures of all ground.
+#[derive(Resource, Clone)]
+pub(super) struct GroundTextures {
+    detail: Handle<Image>,
+    litter: Handle<Image>,
+}
+
+impl FromWorld for GroundTextures {
+    fn from_world(world: &mut World) -> Self {
+        let mut images = world.resource_mut::<Assets<Image>>();
+        let mut add = |texture: TextureData| images.add(image(&texture, ImageAddressMode::Repeat, ALL_MIPS));
+        Self { detail: add(ground_texture()), litter: add(litter_texture()) }
+    }
 }
 
 /// `Look` of the shader.
@@ -37,6 +61,7 @@ struct LookUniform {
     rock: Vec4,
     snow: Vec4,
     litter: Vec4,
+    pale_litter: Vec4,
     canopy: Vec4,
     /// 1 - cosine of the slopes.
     bare_from: f32,
@@ -60,6 +85,7 @@ impl From<&GroundLook> for LookUniform {
             rock: light(look.rock),
             snow: light(look.snow),
             litter: light(look.litter),
+            pale_litter: light(look.pale_litter),
             canopy: light(look.canopy),
             bare_from: steepness(look.bare_slope_deg[0]),
             bare_to: steepness(look.bare_slope_deg[1]),
@@ -73,8 +99,8 @@ impl From<&GroundLook> for LookUniform {
     }
 }
 
-/// The material of ground with that look; `detail` is the ground's texture.
-pub(super) fn ground_material(look: &GroundLook, detail: Handle<Image>) -> GroundMaterial {
+/// The material of ground with that look.
+pub(super) fn ground_material(look: &GroundLook, textures: GroundTextures) -> GroundMaterial {
     GroundMaterial {
         base: StandardMaterial {
             perceptual_roughness: 1.0,
@@ -85,7 +111,7 @@ pub(super) fn ground_material(look: &GroundLook, detail: Handle<Image>) -> Groun
             opaque_render_method: OpaqueRendererMethod::Forward,
             ..default()
         },
-        extension: GroundExtension { look: look.into(), detail },
+        extension: GroundExtension { look: look.into(), detail: textures.detail, litter: textures.litter },
     }
 }
 

@@ -40,7 +40,7 @@
 //! | `drift`, `autocorrelation`, `lag_pairs`, `variogram`, `fit` | Estimates from maps. |
 //! | `spline_ground`, `layers` | Ground formed by control points; sums of grounds. |
 //! | `triangle_ground`, `mesh`, `ray_cast_ground` | A game's own ground: triangles, meshes, rays. |
-//! | `chunk_key`, `chunk`, `pyramid`, `cover`, `ground_texture` | What is drawn of it. |
+//! | `chunk_key`, `chunk`, `pyramid`, `cover`, `ground_texture`, `litter_texture` | What is drawn of it. |
 //! | `components`, `ecs`, `material`, `plugin` | Ground as entities, maps as assets. All others are plain arithmetic without an app. |
 
 mod autocorrelation;
@@ -63,6 +63,8 @@ mod ground_texture;
 mod lag_pairs;
 mod layers;
 mod line_process;
+#[cfg(feature = "render")]
+mod litter_texture;
 #[cfg(feature = "render")]
 mod material;
 mod mesh;

@@ -14,8 +14,8 @@ use bevy::prelude::*;
 use {
     super::{
         components::{GroundLook, Terrain, TerrainSettings},
-        ecs::stream::{GroundTexture, TerrainChunk, TerrainChunks, begin_terrains, recolour_ground, stream_ground},
-        material::GroundMaterial,
+        ecs::stream::{TerrainChunk, TerrainChunks, begin_terrains, recolour_ground, stream_ground},
+        material::{GroundMaterial, GroundTextures},
     },
     crate::{
         plugin_checks::{has_renderer, require_renderer_before},
@@ -55,13 +55,13 @@ impl Plugin for TerrainDrawPlugin {
         app.add_plugins(MaterialPlugin::<GroundMaterial>::default())
             .register_type::<TerrainSettings>()
             .register_type::<GroundLook>()
-            .init_resource::<GroundTexture>()
+            .init_resource::<GroundTextures>()
             .add_observer(remove_made::<Terrain, TerrainChunk, TerrainChunks>);
         let stream = timed!(app, begin_terrains, recolour_ground, stream_ground);
         app.add_systems(Update, stream.chain().in_set(WindwoodSystems::Stream));
     }
 
     fn finish(&self, app: &mut App) {
-        require_renderer_before::<Self>(app, app.world().contains_resource::<GroundTexture>());
+        require_renderer_before::<Self>(app, app.world().contains_resource::<GroundTextures>());
     }
 }

@@ -94,6 +94,14 @@ impl Phenology {
         !self.evergreen && year >= self.fall - 0.5 * self.fall_length - EARLIEST
     }
 
+    /// Whether a tree has neither leaves nor any in the air.
+    #[must_use]
+    pub fn is_bare(&self, year: f32) -> bool {
+        let is_gone = |leaf: LeafState| leaf.size < 1e-3 && !leaf.drifting;
+        // Leaves unfold first where they are early, and the last to fall is that of the highest rank.
+        [-1.0, 1.0].into_iter().all(|lag| [0.0, 1.0].into_iter().all(|rank| is_gone(self.leaves(year, lag, rank))))
+    }
+
     pub(super) fn validate(&self) -> Result<(), SettingError> {
         require("flush", self.flush, 0.05..=0.6)?;
         require("flush_length", self.flush_length, 0.01..=0.3)?;
@@ -175,6 +183,22 @@ mod tests {
         assert_eq!(fir.leaves(0.1, 0.0, 0.5).youth, 0.0);
         assert!(fir.leaves(fir.flush + 0.02, 0.0, 0.5).youth > 0.8);
         assert_eq!(fir.leaves(0.7, 0.0, 0.5).youth, 0.0);
+    }
+
+    #[test]
+    fn a_tree_is_bare_while_no_cluster_has_a_leaf() {
+        let oak = Phenology::default();
+        let clusters = || (0..21).flat_map(|lag| (0..21).map(move |rank| (0.1 * lag as f32 - 1.0, 0.05 * rank as f32)));
+        let mut bare = 0;
+        for step in 0..400 {
+            let year = step as f32 / 400.0;
+            let mut leaves = clusters().map(|(lag, rank)| oak.leaves(year, lag, rank));
+            let is_bare = leaves.all(|leaf| leaf.size < 1e-3 && !leaf.drifting);
+            assert_eq!(oak.is_bare(year), is_bare, "at {year}");
+            bare += usize::from(is_bare);
+        }
+        assert!((80..200).contains(&bare), "{bare} of 400: some months of winter");
+        assert!(!Phenology { evergreen: true, ..oak }.is_bare(0.0));
     }
 
     /// The year is a circle: what the last moment shows the first one shows as well.

@@ -5,7 +5,7 @@ use super::{
     crown::{gardner, impressionist},
     ellipsoid,
     generator::Growth,
-    leaf::{LeafKind, LeafTextures, leaf_textures},
+    leaf::{LeafKind, LeafTextures, bare_spray_texture, leaf_textures},
     species::Species,
 };
 use crate::texture::TextureData;
@@ -19,6 +19,8 @@ pub struct SpeciesTextures {
     pub foliage: TextureData,
     /// Its normals, and in alpha its share of the species' translucency; crowns of polygons and ellipsoids have none.
     pub foliage_normal: Option<TextureData>,
+    /// The same sprays when their leaves have fallen: colour and mask of their twigs. None where leaves stay, or are no sprays.
+    pub bare_foliage: Option<TextureData>,
 }
 
 /// Renders the textures of a species. It takes some 50 ms: call it in the background.
@@ -36,7 +38,10 @@ pub fn species_textures(species: &Species) -> SpeciesTextures {
             LeafKind::Ellipsoids(leaves) => (ellipsoid::texture(&leaves.surface, species.seed), None),
         },
     };
-    SpeciesTextures { bark: bark_textures(&species.wood.bark, species.seed), foliage, foliage_normal }
+    let is_bare_in_winter = foliage_normal.is_some() && !species.phenology.evergreen;
+    let bare_foliage =
+        is_bare_in_winter.then(|| bare_spray_texture(&species.foliage, &species.wood.green, species.seed));
+    SpeciesTextures { bark: bark_textures(&species.wood.bark, species.seed), foliage, foliage_normal, bare_foliage }
 }
 
 impl SpeciesTextures {

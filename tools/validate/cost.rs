@@ -5,6 +5,7 @@
 
 use crate::{
     grid::{self, Stand},
+    memory,
     report::Report,
     support::capture,
 };
@@ -66,6 +67,7 @@ pub fn run(most_trees: u32, folder: &Path) -> Report {
             }
         }
     }
+    memory::run(&mut report);
     report
 }
 

@@ -13,6 +13,7 @@ mod change;
 #[path = "../support/chart.rs"]
 mod chart;
 mod cost;
+mod crown_figures;
 mod extremes;
 mod figure9;
 mod figure9_chart;
@@ -20,6 +21,7 @@ mod frame;
 mod grid;
 mod leaves;
 mod levels;
+mod memory;
 #[path = "../../src/dynamics/oracle/oscillator.rs"]
 #[expect(dead_code, reason = "a part of it is for the unit tests")]
 mod oscillator;

@@ -1,6 +1,6 @@
 //! Trees against the tables of the papers, their own settings, and real trees.
 
-use crate::{report::Report, trees_in_wind};
+use crate::{crown_figures, report::Report, trees_in_wind};
 use bevy_windwood::fire::rhombs;
 use bevy_windwood::tree::{
     Growth, Species,
@@ -43,6 +43,7 @@ pub fn run() -> Report {
     crowns(&mut report);
     conifers(&mut report);
     trees_in_wind::run(&mut report, shipped);
+    crown_figures::run(&mut report, shipped);
     report
 }
 

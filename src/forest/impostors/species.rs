@@ -29,6 +29,8 @@ pub(super) struct ImpostorSpeciesLibrary {
     baking: Vec<(AssetId<Species>, Task<Baked>)>,
     /// What they are baked with.
     settings: ImpostorSettings,
+    /// Whether the device reads compressed textures.
+    compresses_textures: bool,
 }
 
 /// The impostors of a species.
@@ -69,9 +71,10 @@ impl ImpostorSpeciesLibrary {
     }
 
     fn bake(&mut self, id: AssetId<Species>, species: &Species) {
-        let (species, settings) = (species.clone(), self.settings);
+        let (species, settings, compresses) = (species.clone(), self.settings, self.compresses_textures);
         self.baking.retain(|(other, _)| *other != id);
-        self.baking.push((id, AsyncComputeTaskPool::get().spawn(async move { bake(species, &settings) })));
+        let task = AsyncComputeTaskPool::get().spawn(async move { bake(species, &settings, compresses) });
+        self.baking.push((id, task));
     }
 
     /// Takes settings over. Returns the species that have to be baked anew with them.
@@ -87,14 +90,14 @@ impl ImpostorSpeciesLibrary {
     }
 }
 
-fn bake(species: Species, settings: &ImpostorSettings) -> Baked {
+fn bake(species: Species, settings: &ImpostorSettings, compresses_textures: bool) -> Baked {
     let textures = species_textures(&species);
     let models: Vec<TreeModel> =
         bake_variants(&species, species.age.mature_years).take(MAX_VARIANTS as usize).collect();
     let scenes: Vec<Scene> = models.iter().map(|model| Scene::new(&species, model, &textures)).collect();
     let atlas = ImpostorAtlas::bake(&scenes, settings);
     let leans = scenes.iter().zip(&models).map(|(scene, model)| ImpostorSway::of(scene, model)).collect();
-    Baked { atlas: AtlasImages::new(&atlas, leans, textures.foliage_colour()), species }
+    Baked { atlas: AtlasImages::new(&atlas, leans, textures.foliage_colour(), compresses_textures), species }
 }
 
 /// Starts baking the atlas of species that have come or were changed, and of all if the settings were; takes over those that are baked.
@@ -115,6 +118,7 @@ pub(super) fn bake_impostor_species(
         // Without storage buffers not even the layout of their material can be made.
         return;
     }
+    library.compresses_textures = capabilities.reads_compressed_textures;
     for id in library.set(detail.0.bake.impostor) {
         if let Some(species) = species.get(id).filter(|species| species.validate().is_ok()) {
             library.bake(id, species);

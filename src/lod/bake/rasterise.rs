@@ -40,6 +40,8 @@ pub(in crate::lod) struct ParallelRaster<'a> {
     /// Vertices of the tree: place on the field, in rays, and depth, 0 to 1.
     projected: Vec<Vec3>,
     nearest: Vec<Hit>,
+    /// What was rasterised last.
+    parts: TreeParts,
 }
 
 /// The first triangle on a ray's way.
@@ -55,7 +57,7 @@ const NOTHING: Hit = Hit { depth: f32::INFINITY, triangle: u32::MAX, at: [0.0; 2
 impl<'a> ParallelRaster<'a> {
     pub fn new(scene: &'a Scene, rays: [usize; 2]) -> Self {
         let projected = vec![Vec3::ZERO; scene.vertices.len()];
-        Self { scene, rays, projected, nearest: vec![NOTHING; rays[0] * rays[1]] }
+        Self { scene, rays, projected, nearest: vec![NOTHING; rays[0] * rays[1]], parts: TreeParts::All }
     }
 
     /// Rasterises parts of the tree as seen along `basis.forward`, in a box about `centre` whose half sides, m, lie along
@@ -70,6 +72,7 @@ impl<'a> ParallelRaster<'a> {
             *projected = Vec3::new(from.dot(right), from.dot(down), from.dot(forward)) + middle;
         }
         self.nearest.fill(NOTHING);
+        self.parts = parts;
         for triangle in 0..self.scene.triangles_in(parts) {
             self.rasterise(triangle, basis.forward, parts);
         }
@@ -118,7 +121,8 @@ impl<'a> ParallelRaster<'a> {
     /// What the ray of a column and row hit.
     pub fn sample(&self, x: usize, y: usize) -> Option<Sample> {
         let hit = self.nearest[y * self.rays[0] + x];
-        (hit.depth < f32::INFINITY).then(|| self.scene.sample(hit.triangle as usize, hit.at, hit.depth.clamp(0.0, 1.0)))
+        let sample = || self.scene.sample(hit.triangle as usize, hit.at, hit.depth.clamp(0.0, 1.0), self.parts);
+        (hit.depth < f32::INFINITY).then(sample)
     }
 }
 

@@ -33,8 +33,8 @@ pub(in crate::lod) enum TreeParts {
     All,
     /// All but the stems: leaves and branches.
     Crown,
-    /// Stems and branches: the tree in winter.
-    Wood,
+    /// Stems, branches, and the twigs of sprays: the tree in winter.
+    Bare,
 }
 
 /// A tree, ready for rays.
@@ -54,9 +54,21 @@ struct Surfaces {
     of_stem: Vec<bool>,
     bark: LinearMip,
     foliage: LinearMip,
+    /// The sprays in winter, where they have twigs then.
+    bare_foliage: Option<LinearMip>,
     /// Whether leaves grow transparent towards their outline: ellipsoids.
     has_soft_outlines: bool,
     sheds_leaves: bool,
+}
+
+impl Surfaces {
+    /// What is on the sprays.
+    fn foliage_of(&self, parts: TreeParts) -> Option<&LinearMip> {
+        match parts {
+            TreeParts::All | TreeParts::Crown => Some(&self.foliage),
+            TreeParts::Bare => self.bare_foliage.as_ref(),
+        }
+    }
 }
 
 /// A vertex of either mesh.
@@ -87,6 +99,7 @@ impl Scene {
             of_stem,
             bark: LinearMip::new(&textures.bark.base_colour, None, BARK_MIP),
             foliage: LinearMip::new(&textures.foliage, textures.foliage_normal.as_ref(), FOLIAGE_MIP),
+            bare_foliage: textures.bare_foliage.as_ref().map(|twigs| LinearMip::new(twigs, None, FOLIAGE_MIP)),
             has_soft_outlines: species.has_ellipsoids(),
             sheds_leaves: !species.phenology.evergreen,
         };
@@ -124,7 +137,8 @@ impl Scene {
 
     /// How many triangles may be hit: those of the wood come first.
     pub(in crate::lod) fn triangles_in(&self, parts: TreeParts) -> usize {
-        if parts == TreeParts::Wood { self.surfaces.wood_triangles } else { self.surfaces.triangles.len() }
+        let has_no_sprays = parts == TreeParts::Bare && self.surfaces.bare_foliage.is_none();
+        if has_no_sprays { self.surfaces.wood_triangles } else { self.surfaces.triangles.len() }
     }
 
     pub(in crate::lod) fn is_leaf(&self, triangle: usize) -> bool {
@@ -137,27 +151,28 @@ impl Scene {
             let is_hidden = parts == TreeParts::Crown && self.surfaces.of_stem[triangle];
             return if is_hidden { Opacity::Clear } else { Opacity::Opaque };
         }
-        if parts == TreeParts::Wood {
-            return Opacity::Clear;
-        }
         let corners = self.corners(triangle);
         let uvs = corners.map(|corner| corner.uv);
         let normals = self.surfaces.has_soft_outlines.then(|| corners.map(|corner| corner.normal));
-        Opacity::Masked { mask: &self.surfaces.foliage, uvs, normals }
+        match self.surfaces.foliage_of(parts) {
+            Some(mask) => Opacity::Masked { mask, uvs, normals },
+            None => Opacity::Clear,
+        }
     }
 
     /// What a ray sees of a triangle at a place: the shares of its second and third corner.
-    pub(in crate::lod) fn sample(&self, triangle: usize, at: [f32; 2], depth: f32) -> Sample {
+    pub(in crate::lod) fn sample(&self, triangle: usize, at: [f32; 2], depth: f32, parts: TreeParts) -> Sample {
         let corners = self.corners(triangle);
         let uv = interpolated(corners.map(|corner| corner.uv), at);
         let is_leaf = self.is_leaf(triangle);
-        let texture = if is_leaf { &self.surfaces.foliage } else { &self.surfaces.bark };
+        let foliage = self.surfaces.foliage_of(parts).filter(|_| is_leaf);
+        let texture = foliage.unwrap_or(&self.surfaces.bark);
         let texel = if is_leaf { texture.clamped(uv) } else { texture.repeated(uv) };
         let shade = interpolated(corners.map(|corner| corner.shade), at);
         Sample {
             colour: std::array::from_fn(|channel| (texture.colour[texel][channel] * shade[channel]).min(1.0)),
             normal: interpolated_vector(corners.map(|corner| corner.normal), at).try_normalize().unwrap_or(Vec3::Y),
-            translucency: if is_leaf { texture.translucency[texel] } else { 0.0 },
+            translucency: if is_leaf && parts != TreeParts::Bare { texture.translucency[texel] } else { 0.0 },
             depth,
         }
     }

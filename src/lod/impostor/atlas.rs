@@ -63,7 +63,7 @@ impl ImpostorAtlas {
         let frame = frame.with_margin(tile_texels);
         let tile = [tile_texels.x as usize, tile_texels.y as usize];
         let has_bare = scenes.iter().any(Scene::sheds_leaves);
-        let seasons: &[TreeParts] = if has_bare { &[TreeParts::All, TreeParts::Wood] } else { &[TreeParts::All] };
+        let seasons: &[TreeParts] = if has_bare { &[TreeParts::All, TreeParts::Bare] } else { &[TreeParts::All] };
         let width = settings.views_per_side * tile_texels.x;
         let mut atlas = Self {
             trees: scenes.len() as u32,

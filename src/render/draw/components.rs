@@ -30,6 +30,8 @@ pub enum TreePart {
 pub(crate) struct DrawnTree {
     /// None before its first meshes, and when they have to be made anew.
     pub selection: Option<LodSelection>,
+    /// Whether it was drawn without leaves.
+    pub is_bare: bool,
     /// How many meshes it has.
     pub mesh_count: u8,
 }

@@ -13,9 +13,9 @@ use crate::{
             tag::{Fading, pack_tag},
         },
         lod::thresholds::LodSelection,
-        species::library::{PreparedMesh, PreparedVariant, SpeciesLibrary},
+        species::library::{PreparedLod, PreparedMesh, PreparedVariant, SpeciesLibrary},
     },
-    tree::Tree,
+    tree::{Season, Tree},
 };
 use bevy::{camera::visibility::RenderLayers, light::NotShadowCaster, mesh::MeshTag, prelude::*};
 
@@ -36,6 +36,7 @@ pub(crate) fn update_tree_meshes(
     mut commands: Commands,
     library: Res<SpeciesLibrary>,
     capabilities: Res<RenderCapabilities>,
+    season: Res<Season>,
     mut trees: Query<Drawn, Or<(Changed<LodSelection>, Changed<TreeInstance>, Changed<DrawnTree>)>>,
     mut visibilities: Query<&mut Visibility, With<TreeMeshOf>>,
 ) {
@@ -64,17 +65,19 @@ pub(crate) fn update_tree_meshes(
             continue;
         }
         meshes.for_each(|mesh| commands.entity(mesh).despawn());
+        let is_bare = library.is_bare(tree.species.id(), season.wrapped() + tree.season_shift());
         let spawner = MeshSpawner {
             tree: entity,
             instance: &instance,
             variant,
             selection,
             has_impostor,
+            is_bare,
             layers,
             capabilities: *capabilities,
         };
         let mesh_count = spawner.spawn(&mut commands);
-        *drawn.bypass_change_detection() = DrawnTree { selection: Some(*selection), mesh_count };
+        *drawn.bypass_change_detection() = DrawnTree { selection: Some(*selection), is_bare, mesh_count };
     }
 }
 
@@ -98,6 +101,7 @@ struct MeshSpawner<'a> {
     variant: &'a PreparedVariant,
     selection: &'a LodSelection,
     has_impostor: bool,
+    is_bare: bool,
     layers: Option<&'a RenderLayers>,
     capabilities: RenderCapabilities,
 }
@@ -108,12 +112,13 @@ impl MeshSpawner<'_> {
         let LodSelection { lod, is_fading, .. } = *self.selection;
         let Some(level) = self.variant.lods.get(usize::from(lod)) else { return 0 };
         let next = self.variant.lods.get(usize::from(lod) + 1).filter(|_| is_fading);
-        let next_wood = next.filter(|next| !next.is_wood_nested).map(|next| &next.wood);
+        let wood_of = |level| PreparedLod::wood(level, self.is_bare);
+        let next_wood = next.filter(|next| !next.is_wood_nested).map(wood_of);
         let next_leaves = next.and_then(|next| next.leaves.as_ref());
         let fading = if is_fading { Fading::OUT } else { self.end_of(lod) };
         let next_fading = Fading::IN.and(self.end_of(lod + 1));
         let meshes = [
-            (TreePart::Wood, Some(&level.wood), lod, fading),
+            (TreePart::Wood, Some(wood_of(level)), lod, fading),
             (TreePart::Leaves, level.leaves.as_ref(), lod, fading),
             (TreePart::Wood, next_wood, lod + 1, next_fading),
             (TreePart::Leaves, next_leaves, lod + 1, next_fading),
@@ -142,9 +147,10 @@ impl MeshSpawner<'_> {
             (TreeMeshOf(self.tree), ChildOf(self.tree), part, mesh_visibility(self.selection)),
             (Mesh3d(mesh.mesh.clone()), MeshTag::new(tag), self.variant.bounds),
         );
-        let mut spawned = match &mesh.materials.swaying {
+        let materials = mesh.materials(self.is_bare);
+        let mut spawned = match &materials.swaying {
             Some(swaying) if row.is_some() => commands.spawn((entity, MeshMaterial3d(swaying.clone()))),
-            _ => commands.spawn((entity, MeshMaterial3d(mesh.materials.still.clone()))),
+            _ => commands.spawn((entity, MeshMaterial3d(materials.still.clone()))),
         };
         if self.selection.is_shadow_impostor {
             spawned.insert(NotShadowCaster);

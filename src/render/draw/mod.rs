@@ -1,5 +1,6 @@
 //! The mesh entities of trees: they are spawned, swapped and removed as levels are selected.
 
+pub(crate) mod bare;
 pub(crate) mod bounds;
 pub(crate) mod components;
 pub(crate) mod counts;

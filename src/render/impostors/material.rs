@@ -12,7 +12,7 @@ use crate::{
         lighting::{LitAsTrees, TreeLights},
         pipeline::{set_constants, shade_what_is_seen, specialize, tell_of_sun_shadow},
         species::tree_material::SeasonUniform,
-        texture_image::{ALL_MIPS, image},
+        texture_image::{ALL_MIPS, compressed_image, image},
     },
     tree::Species,
 };
@@ -117,7 +117,8 @@ pub(crate) struct AtlasImages {
 }
 
 impl AtlasImages {
-    pub fn new(atlas: &ImpostorAtlas, sways: Vec<ImpostorSway>, summer: [f32; 3]) -> Self {
+    pub fn new(atlas: &ImpostorAtlas, sways: Vec<ImpostorSway>, summer: [f32; 3], compresses_textures: bool) -> Self {
+        let image = if compresses_textures { compressed_image } else { image };
         let [colour, surface, outline] = [&atlas.colour, &atlas.surface, &atlas.coverage]
             .map(|texture| image(texture, ImageAddressMode::ClampToEdge, ALL_MIPS));
         Self {

@@ -18,6 +18,7 @@ pub(crate) struct SpeciesImages {
     pub bark_surface: Image,
     pub foliage: Image,
     pub foliage_normal: Option<Image>,
+    pub bare_foliage: Option<Image>,
     /// Mean colour of the foliage, sRGB 0 to 1.
     pub foliage_colour: [f32; 3],
 }
@@ -32,6 +33,7 @@ impl From<&SpeciesTextures> for SpeciesImages {
             bark_surface: repeating_image(surface),
             foliage: masked(&textures.foliage),
             foliage_normal: textures.foliage_normal.as_ref().map(masked),
+            bare_foliage: textures.bare_foliage.as_ref().map(masked),
             foliage_colour: textures.foliage_colour(),
         }
     }

@@ -36,15 +36,26 @@ pub(crate) struct PreparedVariant {
 /// One LOD level of a variant.
 pub(crate) struct PreparedLod {
     pub wood: PreparedMesh,
+    /// What is drawn in its place while the tree is bare.
+    pub bare_wood: Option<PreparedMesh>,
     pub leaves: Option<PreparedMesh>,
     /// Whether its wood is part of that of the level before.
     pub is_wood_nested: bool,
+}
+
+impl PreparedLod {
+    /// The wood of a tree in leaf, or of a bare one.
+    pub fn wood(&self, is_bare: bool) -> &PreparedMesh {
+        self.bare_wood.as_ref().filter(|_| is_bare).unwrap_or(&self.wood)
+    }
 }
 
 /// A mesh with its material.
 pub(crate) struct PreparedMesh {
     pub mesh: Handle<Mesh>,
     pub materials: MeshMaterials,
+    /// Those of a bare tree, where they are others.
+    pub bare_materials: Option<MeshMaterials>,
     /// Whether its shader can draw it in part.
     pub can_fade: bool,
 }
@@ -68,6 +79,11 @@ impl SpeciesLibrary {
         self.species.get(&species)?.variants.get(&model)
     }
 
+    /// Whether a tree of a species has no leaves at that time of its year.
+    pub fn is_bare(&self, species: AssetId<Species>, year: f32) -> bool {
+        self.species.get(&species).is_some_and(|species| species.phenology.is_bare(year.rem_euclid(1.0)))
+    }
+
     /// Fits the bounds of every variant to the winds that blow. Returns whether any has changed.
     pub fn fit_bounds(&mut self, models: &Assets<TreeModel>, exposure: &WindExposure) -> bool {
         let mut has_changed = false;
@@ -78,5 +94,12 @@ impl SpeciesLibrary {
             }
         }
         has_changed
+    }
+}
+
+impl PreparedMesh {
+    /// The materials of a tree in leaf, or of a bare one.
+    pub fn materials(&self, is_bare: bool) -> &MeshMaterials {
+        self.bare_materials.as_ref().filter(|_| is_bare).unwrap_or(&self.materials)
     }
 }

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     lod::{
         CrossedPolygons, Decimation, EnvelopeLevel, EnvelopeVertices, Lens, LodBakeSettings, LodScreenSizes, Scene,
-        crossed_polygons, decimate, prunable_radius_m,
+        crossed_polygons, decimate, prunable_radius_m, thick_wood,
     },
     render::settings::LevelStyle,
     tree::{
@@ -24,9 +24,11 @@ use bevy::{
 };
 use std::sync::Arc;
 
-/// Share of the wood that each level of a tree that sheds its leaves keeps at least. Branches of birches are thin: with all that may be
-/// left out under the leaves of an oak, a birch would be a bare pole in winter.
+/// Share of the side of its wood that each level of a tree that sheds its leaves keeps at least: under leaves, and without them, where
+/// twigs are all that is seen of a crown. Branches of birches are thin: with all that may be left out under the leaves of an oak, a birch
+/// would be a pole in spring.
 const LEAST_WOOD_SHARE: f32 = 0.45;
+const LEAST_BARE_WOOD_SHARE: f32 = 0.9;
 
 /// A plant with no more vertices of leaves than so many is never thinned: its few leaves, enlarged, would look like another plant.
 const SMALL_VERTICES: usize = 2000;
@@ -48,6 +50,8 @@ pub(crate) struct VariantMeshes {
 /// The meshes of one LOD level.
 pub(crate) struct LodMeshes {
     pub wood: MeshPart,
+    /// What is drawn in its place while the tree has no leaves: more of its twigs.
+    pub bare_wood: Option<MeshPart>,
     pub leaves: Option<MeshPart>,
     /// Whether its wood is part of that of the level before. Then the latter alone is drawn while both levels are.
     pub is_wood_nested: bool,
@@ -90,19 +94,19 @@ pub(crate) fn species_meshes(
     // Ellipsoids are few, and each is seen: none may be left out. Impressionist crowns know which of their polygons may.
     let is_indivisible = matches!(species.growth, Growth::Gardner(_) | Growth::Impressionist(_));
     let leaf_share = |share| if is_indivisible { 1.0 } else { share };
-    let least_radius_m = |model: &TreeModel, most_m| match species.phenology.evergreen {
-        true => most_m,
-        false => prunable_radius_m(&model.skeleton, most_m, LEAST_WOOD_SHARE),
-    };
-    let decimations = |model: &TreeModel| -> Vec<Decimation> {
+    let is_evergreen = species.phenology.evergreen;
+    let decimations = |model: &TreeModel| -> Vec<SeasonalDecimation> {
         if !is_indivisible && model.leaves.positions.len() <= SMALL_VERTICES {
-            return vec![Decimation::default(); settings.decimations.len()];
+            return vec![SeasonalDecimation::default(); settings.decimations.len()];
         }
-        let bearable = |part: &Decimation| Decimation {
-            least_radius_m: least_radius_m(model, part.least_radius_m),
-            leaf_share: leaf_share(part.leaf_share),
+        let of_level = |part: &Decimation| {
+            let radius_m = |share| prunable_radius_m(&model.skeleton, part.least_radius_m, share);
+            let leafy_m = if is_evergreen { part.least_radius_m } else { radius_m(LEAST_WOOD_SHARE) };
+            let bare_m = if is_evergreen { leafy_m } else { radius_m(LEAST_BARE_WOOD_SHARE) };
+            let in_leaf = Decimation { least_radius_m: leafy_m, leaf_share: leaf_share(part.leaf_share) };
+            SeasonalDecimation { in_leaf, bare_radius_m: (bare_m < leafy_m).then_some(bare_m) }
         };
-        settings.decimations.iter().map(bearable).collect()
+        settings.decimations.iter().map(of_level).collect()
     };
     let levels = |model: TreeModel| match (style, &textures) {
         (LevelStyle::Paper, Some(textures)) => paper_levels(species, model, textures, settings),
@@ -117,8 +121,17 @@ pub(crate) fn species_meshes(
     SpeciesMeshes { images: textures.filter(|_| has_images).as_ref().map(SpeciesImages::from), variants }
 }
 
+/// What is left out at a level.
+#[derive(Clone, Copy, Default)]
+struct SeasonalDecimation {
+    in_leaf: Decimation,
+    /// Branches as thick as this stay while the tree is bare, m, where those are more.
+    bare_radius_m: Option<f32>,
+}
+
 fn full_level(model: TreeModel, bark: MaterialKind) -> LodMeshes {
     LodMeshes {
+        bare_wood: None,
         wood: MeshPart { mesh: wood_mesh(Arc::unwrap_or_clone(model.wood)), material: bark },
         leaves: foliage(Arc::unwrap_or_clone(model.leaves)),
         is_wood_nested: false,
@@ -131,17 +144,21 @@ fn foliage(leaves: LeafVertices) -> Option<MeshPart> {
 
 /// The tree itself, and thinned ones. Only the last bark fades, into the impostor. Between the others no more than twigs thinner than a
 /// pixel is left out. Impressionist crowns have the polygons of the distance at which the level begins, on a usual camera's picture.
-fn thinned_levels(species: &Species, model: TreeModel, decimations: &[Decimation]) -> Vec<LodMeshes> {
+fn thinned_levels(species: &Species, model: TreeModel, decimations: &[SeasonalDecimation]) -> Vec<LodMeshes> {
     let last = decimations.len();
     let thinned = decimations.iter().enumerate().map(|(number, decimation)| {
-        let mut meshes = decimate(&model, decimation);
+        let mut meshes = decimate(&model, &decimation.in_leaf);
         if let Growth::Impressionist(crown) = &species.growth {
             let begin_m = LodScreenSizes::default().distances_of_three_m(crown.height_m, Lens::default())[number];
             meshes.leaves = leaves_at(crown, &model.skeleton, begin_m);
         }
-        let material = if number + 1 == last { MaterialKind::FadingBark } else { MaterialKind::Bark };
-        let wood = MeshPart { mesh: wood_mesh(meshes.wood), material };
-        LodMeshes { wood, leaves: foliage(meshes.leaves), is_wood_nested: true }
+        let wood = |wood: WoodVertices| MeshPart {
+            mesh: wood_mesh(wood),
+            material: if number + 1 == last { MaterialKind::FadingBark } else { MaterialKind::Bark },
+        };
+        let bare_wood =
+            decimation.bare_radius_m.map(|radius_m| wood(thick_wood(&model.wood, &model.skeleton, radius_m)));
+        LodMeshes { wood: wood(meshes.wood), bare_wood, leaves: foliage(meshes.leaves), is_wood_nested: true }
     });
     let mut levels: Vec<LodMeshes> = thinned.collect();
     let first = if last == 0 { MaterialKind::FadingBark } else { MaterialKind::Bark };
@@ -166,11 +183,12 @@ fn paper_levels(
         let material = MaterialKind::Envelope(Box::new(repeating_image(&colour)));
         LodMeshes {
             wood: MeshPart { mesh: wood_mesh(trunk), material: MaterialKind::FadingBark },
+            bare_wood: None,
             leaves: Some(MeshPart { mesh: envelope_mesh(envelope, images), material }),
             is_wood_nested: false,
         }
     });
-    let low = LodMeshes { wood: low, leaves: None, is_wood_nested: false };
+    let low = LodMeshes { wood: low, bare_wood: None, leaves: None, is_wood_nested: false };
     std::iter::once(full_level(model, MaterialKind::FadingBark)).chain(medium).chain([low]).collect()
 }
 

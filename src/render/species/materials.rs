@@ -28,6 +28,7 @@ pub(crate) struct SpeciesMaterials {
     bark: MeshMaterials,
     fading_bark: MeshMaterials,
     foliage: MeshMaterials,
+    bare_foliage: Option<MeshMaterials>,
     /// Materials of single variants read the same tables.
     extension: SwayExtension,
     translucency: f32,
@@ -73,7 +74,12 @@ impl MaterialAssets<'_> {
             normal_map_texture: images.foliage_normal.map(|normal| self.images.add(normal)),
             ..leaf_material(species.foliage.translucency)
         };
+        let bare_foliage = images.bare_foliage.map(|twigs| {
+            let twigs = StandardMaterial { base_color_texture: Some(self.images.add(twigs)), ..leaf_material(0.0) };
+            self.add(twigs, &SwayExtension { leaf: extension.leaf.bare(), ..extension.clone() })
+        });
         SpeciesMaterials {
+            bare_foliage,
             bark: self.add(bark, &extension),
             fading_bark: self.add(fading_bark, &extension),
             foliage: self.add(foliage, &extension),
@@ -98,6 +104,11 @@ impl MaterialAssets<'_> {
                 self.add(material, &species.extension)
             }
         }
+    }
+
+    /// What takes the place of a mesh's material while the tree is bare.
+    pub fn when_bare(&self, kind: &MaterialKind, species: &SpeciesMaterials) -> Option<MeshMaterials> {
+        species.bare_foliage.clone().filter(|_| matches!(kind, MaterialKind::Foliage))
     }
 
     fn add(&mut self, base: StandardMaterial, extension: &SwayExtension) -> MeshMaterials {

@@ -140,13 +140,14 @@ pub(crate) fn finish_preparing_species(
 
 impl PreparedAssets<'_> {
     fn add_lod(&mut self, lod: LodMeshes, species: &SpeciesMaterials) -> PreparedLod {
-        let LodMeshes { wood, leaves, is_wood_nested } = lod;
+        let LodMeshes { wood, bare_wood, leaves, is_wood_nested } = lod;
         let mut add = |MeshPart { mesh, material }: MeshPart| PreparedMesh {
             mesh: self.meshes.add(mesh),
             can_fade: material.can_fade(),
+            bare_materials: self.materials.when_bare(&material, species),
             materials: self.materials.of_mesh(material, species),
         };
-        PreparedLod { wood: add(wood), leaves: leaves.map(add), is_wood_nested }
+        PreparedLod { wood: add(wood), bare_wood: bare_wood.map(&mut add), leaves: leaves.map(add), is_wood_nested }
     }
 }
 

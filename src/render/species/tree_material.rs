@@ -80,7 +80,8 @@ pub struct LeafUniform {
     period_s: f32,
     /// 1 where the foliage is ellipsoids.
     is_ellipsoid: f32,
-    padding: f32,
+    /// 1 for sprays without leaves.
+    is_bare: f32,
 }
 
 impl LeafUniform {
@@ -94,8 +95,13 @@ impl LeafUniform {
             flutter_frequency_hz: leaf.flutter_frequency_hz,
             period_s: FLUTTER_PERIOD_S as f32,
             is_ellipsoid: f32::from(u8::from(is_ellipsoid)),
-            padding: 0.0,
+            is_bare: 0.0,
         }
+    }
+
+    /// The same for sprays whose leaves have fallen: all that is on their texture is drawn.
+    pub fn bare(self) -> Self {
+        Self { is_bare: 1.0, ..self }
     }
 }
 

@@ -1,14 +1,12 @@
 //! Builds the ground about the viewers in the background, and shows it.
 
 use crate::{
-    render::texture_image::{ALL_MIPS, image},
     setting::valid_or_last,
     terrain::{
         chunk::{ChunkVertices, chunk_vertices},
         chunk_key::{COARSEST_NEIGHBOUR, ChunkKey},
         components::{GroundLook, Terrain, TerrainSettings},
-        ground_texture::ground_texture,
-        material::{ATTRIBUTE_MARKS, GroundMaterial, ground_material},
+        material::{ATTRIBUTE_MARKS, GroundMaterial, GroundTextures, ground_material},
         pyramid::{Eye, Pyramid},
     },
     viewpoint::Viewpoints,
@@ -16,7 +14,6 @@ use crate::{
 use bevy::{
     asset::RenderAssetUsages,
     camera::{primitives::Aabb, visibility::NoAutoAabb},
-    image::ImageAddressMode,
     mesh::{Indices, MeshTag, PrimitiveTopology},
     platform::collections::HashMap,
     prelude::*,
@@ -62,24 +59,13 @@ impl TerrainChunks {
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TerrainChunk(pub ChunkKey);
 
-/// The texture of all ground.
-#[derive(Resource)]
-pub(in crate::terrain) struct GroundTexture(Handle<Image>);
-
-impl FromWorld for GroundTexture {
-    fn from_world(world: &mut World) -> Self {
-        let image = image(&ground_texture(), ImageAddressMode::Repeat, ALL_MIPS);
-        Self(world.resource_mut::<Assets<Image>>().add(image))
-    }
-}
-
 /// What all chunks depend on.
 type NewGround = Or<(Changed<Terrain>, Changed<TerrainSettings>)>;
 
 /// Starts to build terrains that are new or were changed.
 pub(in crate::terrain) fn begin_terrains(
     mut commands: Commands,
-    texture: Res<GroundTexture>,
+    textures: Res<GroundTextures>,
     mut materials: ResMut<Assets<GroundMaterial>>,
     changed: Query<(Entity, &TerrainSettings, &GroundLook, Option<&TerrainChunks>), NewGround>,
 ) {
@@ -94,7 +80,7 @@ pub(in crate::terrain) fn begin_terrains(
         commands.entity(entity).insert(TerrainChunks {
             pyramid: Pyramid::new(settings.shape()),
             settings,
-            material: material.unwrap_or_else(|| materials.add(ground_material(&look, texture.0.clone()))),
+            material: material.unwrap_or_else(|| materials.add(ground_material(&look, textures.clone()))),
             building: Vec::new(),
             chunks: HashMap::default(),
             arrived: Vec::new(),
@@ -107,7 +93,7 @@ pub(in crate::terrain) fn begin_terrains(
 
 /// Recolours ground whose look was changed.
 pub(in crate::terrain) fn recolour_ground(
-    texture: Res<GroundTexture>,
+    textures: Res<GroundTextures>,
     mut materials: ResMut<Assets<GroundMaterial>>,
     changed: Query<(&GroundLook, &TerrainChunks), Changed<GroundLook>>,
 ) {
@@ -115,7 +101,7 @@ pub(in crate::terrain) fn recolour_ground(
         match look.validate() {
             Ok(()) => {
                 if let Some(mut material) = materials.get_mut(&chunks.material) {
-                    *material = ground_material(look, texture.0.clone());
+                    *material = ground_material(look, textures.clone());
                 }
             }
             Err(error) => warn!("look of the ground: {error}; the last good one stays"),

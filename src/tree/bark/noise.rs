@@ -58,6 +58,8 @@ pub(super) struct Cell {
     pub edge: f32,
     /// From the nearest centre, in cells.
     pub from: Vec2,
+    /// From the nearest centre to the second nearest, in cells.
+    pub to_second: Vec2,
     /// Random bits of the nearest cell.
     pub hash: u32,
 }
@@ -91,7 +93,8 @@ impl Cells {
         let wrapped = home.rem_euclid(self.size).min(self.size - 1.0);
         let first = wrapped.y as usize * self.stride + wrapped.x as usize;
         let (mut nearest, mut second) = (f32::INFINITY, f32::INFINITY);
-        let mut cell = Cell { edge: 0.0, from: Vec2::ZERO, hash: 0 };
+        let mut cell = Cell { edge: 0.0, from: Vec2::ZERO, to_second: Vec2::ZERO, hash: 0 };
+        let mut from_second = Vec2::ZERO;
         for row in 0..3 {
             let start = first + row * self.stride;
             for (column, &(centre, hash)) in self.centres[start..start + 3].iter().enumerate() {
@@ -99,13 +102,16 @@ impl Cells {
                 let distance = from.length_squared();
                 if distance < nearest {
                     (second, nearest) = (nearest, distance);
+                    from_second = cell.from;
                     (cell.from, cell.hash) = (from, hash);
-                } else {
-                    second = second.min(distance);
+                } else if distance < second {
+                    second = distance;
+                    from_second = from;
                 }
             }
         }
         cell.edge = second.sqrt() - nearest.sqrt();
+        cell.to_second = cell.from - from_second;
         cell
     }
 }

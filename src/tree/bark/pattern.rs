@@ -101,12 +101,18 @@ impl<'a> Pattern<'a> {
         }
     }
 
-    /// Long ridges that part and meet, with cracks across.
+    /// Long ridges that part and meet, with cracks across. Furrows run along the trunk, now wide and deep, now nearly closed;
+    /// where one ridge follows another there is no more than a dent.
     fn furrows(&self, uv: Vec2, warp: Vec2, fine: f32, grain: f32) -> Point {
         let bark = self.bark;
         let warp = warp * bark.winding + Vec2::new(0.16 * fine, 0.25 * fine);
         let cell = self.cells.at(uv, warp);
-        let face = (cell.edge + 0.12 * grain * bark.roughness).smoothstep(0.0, bark.furrow_width);
+        let across = cell.to_second.x.abs() / cell.to_second.length().max(1e-3);
+        let openness = (0.55 + 0.9 * self.patches[1].at(uv) + 0.5 * fine).clamp(0.15, 1.2);
+        let depth = across.smoothstep(0.2, 0.75) * (0.35 + 0.65 * openness.min(1.0));
+        let width = bark.furrow_width * (0.4 + 0.9 * openness);
+        let closed = (cell.edge + 0.22 * grain * bark.roughness).smoothstep(0.0, width);
+        let face = 1.0 - depth.max(0.25) * (1.0 - closed);
         let crack = self.flakes.at(uv, warp * 3.0 + Vec2::new(0.0, 0.4 * fine));
         let split = crack.edge.smoothstep(0.0, 0.16);
         let tone = unit(cell.hash >> 8);
@@ -116,7 +122,11 @@ impl<'a> Pattern<'a> {
             face: face * (0.7 + 0.3 * split),
             accent: 0.5 * face.smoothstep(0.35, 0.75) * (1.0 - face.smoothstep(0.75, 1.0)),
             lichen: 0.0,
-            tone: 0.78 + 0.2 * tone + 0.3 * grain * bark.roughness + 0.12 * unit(crack.hash),
+            tone: 0.8
+                + 0.12 * tone
+                + 0.5 * grain * bark.roughness
+                + 0.16 * unit(crack.hash)
+                + 0.1 * self.patches[0].at(uv),
         }
     }
 

@@ -14,4 +14,4 @@ mod venation;
 
 pub use ellipsoids::{LeafEllipsoids, LeafKind};
 pub use settings::{Leaf, LeafArrangement, LeafMargin, LeafShape};
-pub use texture::{LeafTextures, leaf_textures};
+pub use texture::{LeafTextures, bare_spray_texture, leaf_textures};

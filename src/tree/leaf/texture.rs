@@ -65,6 +65,34 @@ pub fn leaf_textures(foliage: &Foliage, green: &GreenWood, seed: u64) -> LeafTex
     LeafTextures { base_colour: canvas.colours.into_mask_texture(), normal: canvas.normals.into_normal_texture() }
 }
 
+/// Half the width of the thinnest line of a bare spray, texels: thinner ones would break into dots a mip or two later.
+const THINNEST_TEXELS: f32 = 1.2;
+/// Length of the spur that bore a leaf, in leaves.
+const SPUR: f32 = 0.4;
+
+/// Renders the colour of the same spray in winter: its twigs, and the spurs that bore its leaves. Its mask has as much coverage in every
+/// mip, so that from afar few lines stay, and these do not break.
+#[must_use]
+pub fn bare_spray_texture(foliage: &Foliage, green: &GreenWood, seed: u64) -> TextureData {
+    let leaf = &foliage.leaf;
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let shoots = shoots(leaf, &mut random);
+    let mut leaves = Vec::new();
+    shoots.iter().for_each(|shoot| shoot.place_leaves(leaf, &mut leaves, &mut random));
+    let mut canvas = SprayCanvas::new(leaf);
+    let [twig, side_shoots] = green.of_spray(leaf.twig_colour);
+    let thinnest = THINNEST_TEXELS / TEXELS;
+    for leaf in leaves.iter().step_by(2) {
+        let tip = leaf.root + leaf.direction * (SPUR * leaf.length);
+        canvas.twig(&Shoot { root: leaf.root, tip, radius: thinnest }, side_shoots);
+    }
+    for (index, shoot) in shoots.iter().enumerate() {
+        let shoot = Shoot { radius: shoot.radius.max(2.0 * thinnest), ..*shoot };
+        canvas.twig(&shoot, if index == 0 { twig } else { side_shoots });
+    }
+    canvas.colours.into_mask_texture()
+}
+
 /// What is blended over a texel: coverage, colour, normal and translucency; or shade, where nothing covers it.
 struct Fragment {
     coverage: f32,

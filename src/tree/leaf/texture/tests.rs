@@ -53,6 +53,22 @@ fn foliage(shape: LeafShape) -> Foliage {
     Foliage { leaf, ..Foliage::default() }
 }
 
+/// A bare spray is some lines, and from afar as much of them is there as from near by.
+#[test]
+fn bare_sprays_keep_the_coverage_of_their_twigs() {
+    for shape in SHAPES {
+        let foliage = foliage(shape);
+        let leafy = drawn_share(&leaf_textures(&foliage, &GreenWood::default(), 4).base_colour.mips[0]);
+        let bare = bare_spray_texture(&foliage, &GreenWood::default(), 4);
+        let full = drawn_share(&bare.mips[0]);
+        assert!((0.01..0.7 * leafy).contains(&full), "{shape:?}: {full} of {leafy}");
+        for mip in &bare.mips[1..4] {
+            let share = drawn_share(mip);
+            assert!((share / full - 1.0).abs() < 0.1, "{shape:?}: {share} of {full}");
+        }
+    }
+}
+
 #[test]
 fn mips_keep_the_coverage_of_leaves() {
     for shape in SHAPES {
