@@ -7,6 +7,8 @@
 
 mod options;
 mod pictures;
+// The gallery uses all of it.
+#[allow(dead_code)]
 #[path = "../gallery/studio.rs"]
 mod studio;
 #[path = "../support/mod.rs"]
