@@ -1,7 +1,8 @@
 //! The bars around the picture: which panel, which view, which age and season; and what was done last.
 
 use bevy_egui::egui::{
-    Align, DragValue, Id, Label, Layout, RichText, Slider, SliderClamping, ThemePreference, Ui, WidgetInfo, WidgetType, vec2,
+    Align, DragValue, Id, Label, Layout, RichText, Slider, SliderClamping, ThemePreference, Ui, WidgetInfo, WidgetType,
+    vec2,
 };
 
 use super::{
@@ -113,7 +114,11 @@ pub fn stage_bar(ui: &mut Ui, stage: &mut Stage, season: &mut Season, wind: &mut
             ui.add(bare(slider)).labelled_by(named);
             ui.add_sized(
                 vec2(64.0, ROW - 4.0),
-                DragValue::new(&mut years).range(1.0..=5000.0).clamp_existing_to_range(false).suffix(" a").max_decimals(0),
+                DragValue::new(&mut years)
+                    .range(1.0..=5000.0)
+                    .clamp_existing_to_range(false)
+                    .suffix(" a")
+                    .max_decimals(0),
             )
             .labelled_by(named);
         });

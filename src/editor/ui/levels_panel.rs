@@ -115,7 +115,10 @@ fn table(ui: &mut Ui, id: &str, rows: &[(&str, String)]) {
     let width = ui.available_width() - 12.0;
     Grid::new(id).num_columns(2).striped(true).spacing(vec2(8.0, 4.0)).min_row_height(18.0).show(ui, |ui| {
         for (name, value) in rows {
-            ui.add_sized(vec2(width - 90.0, 18.0), Label::new(*name).truncate().halign(Align::LEFT));
+            ui.allocate_ui_with_layout(vec2(width - 90.0, 18.0), Layout::left_to_right(Align::Center), |ui| {
+                ui.set_width(width - 90.0);
+                ui.add(Label::new(*name).truncate());
+            });
             ui.allocate_ui_with_layout(vec2(82.0, 18.0), Layout::right_to_left(Align::Center), |ui| {
                 ui.label(RichText::new(value).monospace());
             });

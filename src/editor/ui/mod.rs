@@ -151,9 +151,12 @@ fn legend(context: &bevy_egui::egui::Context, picture: Rect, entries: &[(String,
         return;
     }
     let corner = picture.right_top() + vec2(-10.0, 10.0);
-    Area::new(Id::new("windwood legend")).pivot(Align2::RIGHT_TOP).fixed_pos(corner).interactable(false).show(
-        context,
-        |ui| {
+    Area::new(Id::new("windwood legend"))
+        .pivot(Align2::RIGHT_TOP)
+        .fixed_pos(corner)
+        .interactable(false)
+        .fade_in(false)
+        .show(context, |ui| {
             Frame::popup(ui.style()).show(ui, |ui| {
                 for (text, colour) in entries {
                     ui.horizontal(|ui| {
@@ -164,8 +167,7 @@ fn legend(context: &bevy_egui::egui::Context, picture: Rect, entries: &[(String,
                     });
                 }
             });
-        },
-    );
+        });
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Plots that all look alike.
 
 use bevy_egui::egui::{Color32, RichText, Ui};
-use egui_plot::{GridInput, GridMark, Legend, Line, LineStyle, Plot, PlotPoints, VLine};
+use egui_plot::{Corner, GridInput, GridMark, Legend, Line, LineStyle, Plot, PlotPoints, VLine};
 
 use super::theme::palette;
 use crate::editor::spectrum::Band;
@@ -19,7 +19,7 @@ pub struct Curve<'a> {
 #[derive(Clone, Copy, Default)]
 pub struct PlotForm<'a> {
     pub title: &'a str,
-    /// Below and beside the axes.
+    /// What is along the axes: across and up.
     pub axes: [&'a str; 2],
     pub height: f32,
     /// Whether both axes are decades.
@@ -33,8 +33,13 @@ pub struct PlotForm<'a> {
 /// Draws a plot.
 pub fn plot(ui: &mut Ui, form: &PlotForm, curves: Vec<Curve>) {
     let target = palette(ui.visuals()).target;
-    ui.label(RichText::new(form.title).strong());
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(form.title).strong());
+        ui.weak(format!("{} over {}", form.axes[1], form.axes[0]));
+    });
     let [is_log_x, is_log_y] = [form.is_logarithmic || form.has_logarithmic_x, form.is_logarithmic];
+    // Spectra and coherences fall: there is room under them.
+    let corner = if is_log_x { Corner::LeftBottom } else { Corner::RightTop };
     let mut plot = Plot::new(form.title)
         .height(form.height)
         .allow_drag(false)
@@ -43,10 +48,8 @@ pub fn plot(ui: &mut Ui, form: &PlotForm, curves: Vec<Curve>) {
         .allow_boxed_zoom(false)
         .allow_double_click_reset(false)
         .show_crosshair(false)
-        .x_axis_label(form.axes[0])
-        .y_axis_label(form.axes[1])
         .set_margin_fraction(bevy_egui::egui::vec2(0.01, 0.06))
-        .legend(Legend::default().text_style(bevy_egui::egui::TextStyle::Small).background_alpha(0.6));
+        .legend(Legend::default().position(corner).text_style(bevy_egui::egui::TextStyle::Small).background_alpha(0.6));
     if is_log_x {
         plot = plot.x_grid_spacer(decades).x_axis_formatter(|mark, _| power_of_ten(mark));
     }

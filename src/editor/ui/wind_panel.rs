@@ -1,6 +1,6 @@
 //! The panel of the wind: its settings, and what it is like.
 
-use bevy_egui::egui::{Align, Align2, Color32, FontId, Label, RichText, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
+use bevy_egui::egui::{Align, Align2, Color32, FontId, Layout, RichText, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 
 use super::{
     plots::{Curve, PlotForm, plot, points},
@@ -69,7 +69,7 @@ pub fn wind_panel(ui: &mut Ui, wind: &mut Wind, stage: &mut Stage, table: &Secti
 
 /// Where the wind blows to, seen from above: x to the right, z down.
 fn compass(ui: &mut Ui, wind: &Wind) {
-    let (response, painter) = ui.allocate_painter(vec2(ui.available_width(), 108.0), Sense::hover());
+    let (response, painter) = ui.allocate_painter(vec2(ui.available_width(), 132.0), Sense::hover());
     let (middle, radius) = (response.rect.center(), 42.0);
     let weak = ui.visuals().weak_text_color();
     painter.circle_stroke(middle, radius, Stroke::new(1.0, weak));
@@ -97,7 +97,10 @@ fn facts_table(ui: &mut Ui, facts: WindFacts) {
     };
     let row = |ui: &mut Ui, name: &str, value: String| {
         ui.horizontal(|ui| {
-            ui.add_sized(vec2(LABEL_WIDTH, 18.0), Label::new(name).halign(Align::LEFT));
+            ui.allocate_ui_with_layout(vec2(LABEL_WIDTH, 18.0), Layout::left_to_right(Align::Center), |ui| {
+                ui.set_width(LABEL_WIDTH);
+                ui.label(name);
+            });
             ui.label(RichText::new(value).strong());
         });
     };
@@ -128,7 +131,7 @@ pub fn wind_plots(ui: &mut Ui, facts: WindFacts) {
         return;
     };
     let rows = 4.0 + if facts.tip.is_some() { 1.0 } else { 0.0 };
-    let height = ((ui.available_height() - 26.0 * rows) / rows).clamp(92.0, 420.0);
+    let height = ((ui.available_height() - 26.0 * rows) / rows).clamp(104.0, 420.0);
     let form = |title, axes| PlotForm { title, axes, height, ..PlotForm::default() };
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let series = Curve {
