@@ -48,6 +48,7 @@
 //! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Terrain`](terrain::Terrain) | texture, render |
 //! | [`cells`] | the grid of a forest: what to plant, what is seen, stems by place; no ECS | scatter |
 //! | [`forest`] | forests that grow from plans around the viewers, [`Forest`](forest::Forest) | scatter, cells, terrain, tree, lod, sway, wind, render |
+//! | `editor` | panels that edit all of it while the program runs | forest, tree, lod, sway, wind, render, dynamics, texture |
 //!
 //! What all rooms may use lies beside `lib.rs`: [`Ground`], [`Viewpoint`], [`SettingError`] and their like.
 //!
@@ -56,12 +57,14 @@
 //! # Features
 //! `render` (on by default) holds all drawing. Without it, [`WindwoodMinimalPlugins`] moves the same trees on a server or in
 //! a test. `picking` makes trees pickable by Bevy's pointers, `avian` makes their colliders bodies of `avian3d`. `export` writes trees and
-//! stands as files for other programs.
+//! stands as files for other programs. `editor` adds the workbench: panels that edit species, wind and levels while the program runs.
 
 #![forbid(unsafe_code)]
 
 mod background;
 mod constants;
+#[cfg(feature = "editor")]
+mod file_write;
 mod ground;
 mod interpolation;
 mod mixing;
@@ -77,6 +80,8 @@ mod viewpoint;
 
 pub mod cells;
 pub mod dynamics;
+#[cfg(feature = "editor")]
+pub mod editor;
 #[cfg(feature = "export")]
 pub mod export;
 pub mod fire;
@@ -191,4 +196,7 @@ mod guide {
     #[cfg(feature = "export")]
     #[doc = include_str!("../docs/guide/export.md")]
     struct Export;
+    #[cfg(feature = "editor")]
+    #[doc = include_str!("../docs/guide/workbench.md")]
+    struct Workbench;
 }

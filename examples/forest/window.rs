@@ -12,6 +12,15 @@ pub fn plugin(app: &mut App) {
     let keys = format!("{WIND_KEYS}    G  gustiness    H  arrows");
     app.add_systems(Startup, (spawn_text(&[CAMERA_KEYS, &keys]), spawn_wind_cells))
         .add_systems(Update, (change_wind, change_gustiness, show_arrows, show_wind));
+    #[cfg(feature = "editor")]
+    add_workbench(app);
+}
+
+/// F2 opens the workbench over the forest, with the species that has most trees.
+#[cfg(feature = "editor")]
+fn add_workbench(app: &mut App) {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/species/oak.species.ron");
+    app.add_plugins(bevy_windwood::editor::EditorPlugin { file: Some(file.into()), ..default() });
 }
 
 /// A grid of wind cells over the forest. They are drawn as arrows.

@@ -26,11 +26,13 @@ pub struct ForestCulling {
     pub around_m: f32,
     /// A cell that is seen no more stays for so many frames, so that looking about moves nothing to and fro.
     pub lingering_frames: u8,
+    /// Whether what is hidden stays hidden and what is shown stays shown, to look at it from elsewhere.
+    pub is_frozen: bool,
 }
 
 impl Default for ForestCulling {
     fn default() -> Self {
-        Self { enabled: true, around_m: 50.0, lingering_frames: 60 }
+        Self { enabled: true, around_m: 50.0, lingering_frames: 60, is_frozen: false }
     }
 }
 
@@ -149,6 +151,9 @@ pub(super) fn cull_cells(
     mut forests: Query<(&ForestCells, &mut CulledCells)>,
     mut cells: Query<&mut Visibility, With<ForestCell>>,
 ) {
+    if settings.is_frozen {
+        return;
+    }
     // One for each camera, and one more for each of its suns.
     views.clear();
     for (_, frustum, at) in cameras.iter().filter(|(camera, ..)| camera.is_active) {

@@ -19,7 +19,7 @@
 //! # Files
 //! - Plain arithmetic without an app: `settings`, `frame`, `profile`, `spectrum`, `level_spectrum`, `coherence`,
 //!   `factorisation`, `synthesis`, `interpolation`, `lateral`, `fast_gusts`, `field`, `pressure`, `canopy`,
-//!   `cross_fade`, `source`.
+//!   `cross_fade`, `source`, `targets`.
 //! - For an app: `ecs/clock` ([`WindClock`]), `ecs/active` ([`Wind`], [`ActiveWind`]), `ecs/sources` ([`WindSources`]), `components`
 //!   ([`WindCell`], [`WindSource`]),
 //!   `gizmos`, `plugin`.
@@ -50,6 +50,8 @@ mod settings;
 mod source;
 mod spectrum;
 mod synthesis;
+#[cfg(feature = "editor")]
+mod targets;
 
 pub use crate::constants::REFERENCE_HEIGHT_M;
 pub use canopy::{Canopy, EXPOSURE_DIRECTIONS};

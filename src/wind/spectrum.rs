@@ -87,7 +87,7 @@ impl DecayCoefficients {
     /// exp(-f^), the correlation of the parts with frequency f of two points' velocities (equation 12).
     ///
     /// `mean_speed_m_s` > 0 is the mean of the mean speeds at the two points.
-    #[cfg(test)]
+    #[cfg(any(test, feature = "editor"))]
     pub(super) fn root_coherence(self, frequency_hz: f64, lateral_m: f64, vertical_m: f64, mean_speed_m_s: f64) -> f64 {
         (-frequency_hz * self.decay_time_s(lateral_m, vertical_m, mean_speed_m_s)).exp()
     }

@@ -1,0 +1,60 @@
+//! The workbench: a tree on a turntable, and panels that edit its species, the wind and levels of detail.
+//!
+//! In a window: everything by mouse or keys; `?` lists them. Without a display, or with `--headless`, a picture of each panel is
+//! written instead.
+//!
+//! `cargo run --features editor --example workbench -- --help` lists the options.
+
+mod options;
+mod pictures;
+// The gallery uses all of it.
+#[allow(dead_code)]
+#[path = "../gallery/studio.rs"]
+mod studio;
+#[path = "../support/mod.rs"]
+mod support;
+
+use bevy::prelude::*;
+use bevy_windwood::{
+    editor::{EditorPlugin, StageCamera},
+    prelude::*,
+    render::LevelStyle,
+};
+use clap::Parser;
+use options::Options;
+use std::process::ExitCode;
+use support::{capture, start};
+
+fn main() -> ExitCode {
+    let mut options = Options::parse();
+    options.image.choose_pictures_without_display(&options.out);
+    let engine = if options.image.headless {
+        capture::headless_engine(None)
+    } else {
+        // The workbench closes the window itself, once it has asked about unsaved changes.
+        capture::engine("bevy_windwood: workbench", options.image.size).set(WindowPlugin {
+            primary_window: Some(Window {
+                title: "bevy_windwood: workbench".into(),
+                resolution: options.image.size.into(),
+                ..default()
+            }),
+            close_when_requested: false,
+            ..default()
+        })
+    };
+    let mut app = App::new();
+    app.add_plugins((engine, WindwoodPlugins))
+        .add_plugins(EditorPlugin { file: Some(options.file.clone()), turntable: true, starts_open: true })
+        // One tree needs no lower levels, and they would take longer than the tree.
+        .insert_resource(LevelOfDetail { style: LevelStyle::Full, ..default() })
+        .insert_resource(Wind { speed: options.wind.wind, seed: options.wind.seed, fade_s: 1.0, ..default() })
+        .add_systems(Startup, studio::spawn);
+    if options.image.headless {
+        return start::exit_code(pictures::render(&mut app, &options));
+    }
+    app.add_systems(Startup, |mut commands: Commands| {
+        commands.spawn((StageCamera, studio::projection()));
+    })
+    .run();
+    ExitCode::SUCCESS
+}

@@ -1,0 +1,31 @@
+//! Command-line options of the workbench.
+
+use crate::support::options::{ImageOptions, WindOptions};
+use clap::Parser;
+use std::path::PathBuf;
+
+/// The workbench.
+#[derive(Parser, Clone, Debug)]
+#[command(
+    about = "Edits species, wind and levels of detail. Writes a picture of each panel where there is no window.",
+    mut_arg("size", |size| size.default_value("1280x720").help("Size of a picture, or of the window, pixels")),
+    mut_arg("wind", |speed| speed.default_value("6")),
+)]
+pub struct Options {
+    /// The species that is edited first.
+    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/species/oak.species.ron"))]
+    pub file: PathBuf,
+    #[command(flatten)]
+    pub wind: WindOptions,
+    #[command(flatten)]
+    pub image: ImageOptions,
+    /// Pictures to write, by name, separated by commas; all by default.
+    #[arg(long, value_delimiter = ',')]
+    pub pictures: Vec<String>,
+    /// Light colours in all pictures.
+    #[arg(long)]
+    pub light: bool,
+    /// Folder for the pictures.
+    #[arg(long, default_value = "out")]
+    pub out: PathBuf,
+}

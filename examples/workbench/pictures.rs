@@ -1,0 +1,163 @@
+//! A picture of each panel, view and dialog.
+
+use crate::{
+    options::Options,
+    studio,
+    support::capture::{self, create_folder, save, step},
+};
+use bevy::prelude::*;
+use bevy_egui::{EguiContext, PrimaryEguiContext, egui::ThemePreference};
+use bevy_windwood::{
+    editor::{Arrangement, Dialog, Panel, Stage, StageCamera, View, Workbench},
+    prelude::*,
+};
+use std::{
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+/// Longest wait for what a picture shows.
+const TIMEOUT: Duration = Duration::from_secs(120);
+/// Frames after which panels have their layout, and a tree is drawn.
+const SETTLING_FRAMES: usize = 8;
+
+/// A picture.
+struct Shot {
+    name: &'static str,
+    panel: Panel,
+    stage: Stage,
+    /// The species, if it is another than that of the options.
+    species: Option<&'static str>,
+    /// What is looked for among the fields.
+    filter: &'static str,
+    dialog: Option<fn(&Path) -> Dialog>,
+    /// Whether something is changed before.
+    is_changed: bool,
+}
+
+impl Default for Shot {
+    fn default() -> Self {
+        Self {
+            name: "species",
+            panel: Panel::Species,
+            stage: Stage::default(),
+            species: None,
+            filter: "",
+            dialog: None,
+            is_changed: false,
+        }
+    }
+}
+
+fn shots() -> Vec<Shot> {
+    let view = |name, view| Shot { name, stage: Stage { view, ..default() }, ..default() };
+    let row = |name, arrangement| Shot { name, stage: Stage { arrangement, ..default() }, ..default() };
+    vec![
+        Shot::default(),
+        Shot { name: "starling", species: Some("impression_summer"), ..default() },
+        Shot { name: "search", filter: "angle", ..default() },
+        Shot {
+            name: "compare",
+            stage: Stage { compares: true, ..default() },
+            is_changed: true,
+            filter: "growth.trunk",
+            ..default()
+        },
+        row("ages", Arrangement::Ages),
+        row("seasons", Arrangement::Seasons),
+        row("variants", Arrangement::Variants),
+        view("wireframe", View::Wireframe),
+        view("skeleton", View::Skeleton),
+        view("frequencies", View::Frequencies),
+        view("levels", View::Levels),
+        view("leaf_area", View::LeafArea),
+        Shot { name: "wind", panel: Panel::Wind, stage: Stage { shows_wind: true, ..default() }, ..default() },
+        Shot { name: "cost", panel: Panel::Levels, ..default() },
+        Shot { name: "open", dialog: Some(Dialog::open), ..default() },
+        Shot { name: "shortcuts", dialog: Some(|_| Dialog::Shortcuts), ..default() },
+    ]
+}
+
+/// Renders the pictures.
+///
+/// # Errors
+/// If what a picture shows does not get ready, or a file cannot be written.
+pub fn render(app: &mut App, options: &Options) -> Result<(), String> {
+    capture::begin(app)?;
+    let target = capture::target(app, options.image.render_size());
+    app.world_mut().spawn((StageCamera, capture::camera(&target), studio::projection()));
+    create_folder(&options.out)?;
+    let shots = shots();
+    for shot in &shots {
+        if !options.pictures.is_empty() && options.pictures.iter().all(|name| name != shot.name) {
+            continue;
+        }
+        show(app, options, shot);
+        wait(app, shot)?;
+        let picture = capture::capture(app, &target, options.image.size)?;
+        let path = options.out.join(format!("workbench_{}.png", shot.name));
+        save(&picture, &path)?;
+        println!("{}", path.display());
+    }
+    Ok(())
+}
+
+/// Has the workbench show what a picture is of.
+fn show(app: &mut App, options: &Options, shot: &Shot) {
+    let folder = options.file.parent().unwrap_or(Path::new("."));
+    let file = shot.species.map_or_else(|| options.file.clone(), |name| folder.join(format!("{name}.species.ron")));
+    let world = app.world_mut();
+    let mut workbench = world.resource_mut::<Workbench>();
+    open(&mut workbench, &file);
+    workbench.panel = shot.panel;
+    workbench.stage = shot.stage.clone();
+    workbench.find_field(shot.filter);
+    workbench.show_dialog(shot.dialog.map(|dialog| dialog(&file)));
+    if shot.is_changed {
+        let mut species = workbench.species().clone();
+        if let bevy_windwood::tree::Growth::ReevesBlau(growth) = &mut species.growth {
+            growth.trunk.height_m *= 1.3;
+            growth.envelope.top_m *= 1.3;
+            growth.envelope.radius_m *= 0.6;
+        }
+        workbench.change(species, "Slender");
+    }
+    let theme = if options.light { ThemePreference::Light } else { ThemePreference::Dark };
+    let mut contexts = world.query_filtered::<&mut EguiContext, With<PrimaryEguiContext>>();
+    contexts.iter_mut(world).for_each(|mut context| context.get_mut().set_theme(theme));
+}
+
+/// Opens the file as it is on disk: what a picture before has changed is given up.
+fn open(workbench: &mut Workbench, file: &PathBuf) {
+    workbench.undo_all();
+    workbench.open_file(file);
+}
+
+fn wait(app: &mut App, shot: &Shot) -> Result<(), String> {
+    let start = Instant::now();
+    // What is asked for has to be taken up before it can be seen to be missing.
+    // Software takes a second for a picture of a tree: it is looked at when it is the right one.
+    look(app, false);
+    (0..SETTLING_FRAMES).for_each(|_| step(app));
+    loop {
+        let workbench = app.world().resource::<Workbench>();
+        if workbench.is_settled() && app.world().resource::<ActiveSway>().is_ready() {
+            break;
+        }
+        if start.elapsed() > TIMEOUT {
+            return Err(format!("what the picture `{}` shows did not get ready", shot.name));
+        }
+        app.update();
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    look(app, true);
+    (0..SETTLING_FRAMES).for_each(|_| step(app));
+    Ok(())
+}
+
+/// Switches the camera of the turntable on or off.
+fn look(app: &mut App, is_active: bool) {
+    let world = app.world_mut();
+    let mut cameras = world.query_filtered::<&mut Camera, With<StageCamera>>();
+    cameras.iter_mut(world).for_each(|mut camera| camera.is_active = is_active);
+}

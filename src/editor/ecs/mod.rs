@@ -1,0 +1,81 @@
+//! The workbench in an app.
+
+mod camera;
+mod manners;
+mod measure;
+mod mesh;
+mod show_species;
+pub mod turntable;
+pub mod workbench;
+
+use self::{
+    camera::{scale_panels, switch_camera},
+    manners::is_open,
+    measure::{Measuring, measure_tip, measure_wind, note_costs, show_arrows},
+    mesh::{begin_diagrams, hide_trees, show_diagrams},
+    show_species::{Applied, apply_species, has_species_to_show, note_tree},
+    turntable::{arrange_trees, place_trees, turn},
+    workbench::{Workbench, draw_panels},
+};
+use crate::{plugin_checks::require_plugin, render::TreeRenderPlugin, schedule::WindwoodSystems, timing::timed};
+use bevy::prelude::*;
+use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass};
+use std::path::PathBuf;
+
+/// The workbench: panels that edit species, wind and levels of detail while the program runs. Add it after
+/// [`WindwoodPlugins`](crate::WindwoodPlugins); F2 opens and closes it.
+///
+/// It adds `bevy_egui`'s plugin where there is none, and draws with a camera of its own.
+#[derive(Clone, Debug, Default)]
+pub struct EditorPlugin {
+    /// The file of the species that is edited first. In a game, its trees change with it where the game has loaded that file.
+    pub file: Option<PathBuf>,
+    /// Whether the species stands on a turntable, before a [`StageCamera`](turntable::StageCamera) of yours. Else it stands
+    /// wherever the game has planted it.
+    pub turntable: bool,
+    /// Whether it is open from the beginning.
+    pub starts_open: bool,
+}
+
+impl Plugin for EditorPlugin {
+    fn build(&self, app: &mut App) {
+        require_plugin::<Self, TreeRenderPlugin>(app);
+        if !app.is_plugin_added::<EguiPlugin>() {
+            app.add_plugins(EguiPlugin::default());
+            let mut settings = app.world_mut().resource_mut::<EguiGlobalSettings>();
+            settings.auto_create_primary_context = false;
+            // What is typed or dragged in a panel is not meant for the game.
+            settings.enable_absorb_bevy_input_system = true;
+        }
+        let mut workbench = Workbench::new(self.file.as_deref(), self.turntable);
+        workbench.is_open = self.starts_open;
+        app.insert_resource(workbench)
+            .init_resource::<Applied>()
+            .init_resource::<Measuring>()
+            .add_plugins(manners::plugin)
+            .add_systems(PreUpdate, scale_panels.run_if(is_open))
+            .add_systems(
+                Update,
+                (
+                    switch_camera,
+                    (
+                        apply_species.run_if(has_species_to_show),
+                        (measure_wind, measure_tip).run_if(is_open),
+                        show_arrows,
+                    )
+                        .before(WindwoodSystems::Bake),
+                ),
+            )
+            .add_systems(PostUpdate, note_tree.run_if(is_open))
+            .add_systems(Last, note_costs.run_if(is_open));
+        // What the panels cost is told with the rest.
+        let draw_panels = timed!(app, draw_panels).run_if(is_open);
+        app.add_systems(EguiPrimaryContextPass, draw_panels);
+        if self.turntable {
+            app.add_systems(Update, (turn, arrange_trees).chain().before(WindwoodSystems::Bake)).add_systems(
+                Update,
+                (place_trees, begin_diagrams, show_diagrams, hide_trees).chain().after(WindwoodSystems::SelectLod),
+            );
+        }
+    }
+}

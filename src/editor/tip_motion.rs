@@ -1,0 +1,136 @@
+//! How the top of a tree moves in a wind: one period of it, and its spectrum beside the tree's own frequencies.
+
+use bevy::math::{Vec3, Vec4};
+
+use super::spectrum::{Band, Transform, spectrum};
+use crate::{
+    dynamics::{
+        BeamDynamics, FrequencyClasses, NO_PARENT,
+        pose::{BeamPose, TreeInWind, TreePoser},
+    },
+    sway::WindResponse,
+    tree::TreeModel,
+};
+
+/// Samples in a second: trunks and limbs are slower than half of it.
+const SAMPLES_PER_S: f64 = 16.0;
+/// Orders of branches whose own frequencies are told.
+const ORDERS: [&str; 3] = ["trunk", "limbs", "boughs"];
+
+/// The motion of a tree's top.
+#[derive(Clone, Debug)]
+pub struct TipMotion {
+    /// Time, s, and how far the top is from where it rests, along the wind, m.
+    pub along: Vec<[f64; 2]>,
+    /// The same across it.
+    pub across: Vec<[f64; 2]>,
+    /// Power spectral density of the motion along the wind, m²/Hz.
+    pub spectrum: Vec<Band>,
+    /// The slowest natural frequency of each order of branches, Hz.
+    pub own: Vec<(&'static str, f64)>,
+}
+
+impl TipMotion {
+    /// Of a tree at a place, with a share of its leaves. None of a tree without wood. It takes some milliseconds: meant for the
+    /// background.
+    pub fn of(model: &TreeModel, response: &WindResponse, place: Vec3, leaf_share: f32) -> Option<Self> {
+        let (beams, rest) = stem_to_top(model)?;
+        let (frame, period_s) = (response.field.frame(), response.field.period_s());
+        let wind = response.beam_wind();
+        let tree =
+            TreeInWind { map: response.basis.map(), wind, to_wind: frame.wind_from_world(), scale: 1.0, leaf_share };
+        let poser = TreePoser::new(&beams, &tree);
+        let mut poses = vec![BeamPose::REST; beams.len()];
+        let mut responses: Vec<Vec4> = Vec::new();
+        let mut off_rest = |time_s: f64| {
+            response.table.responses(&response.place(place, time_s), poser.rows(), &mut responses);
+            poser.pose(&responses, &mut poses);
+            let top = poses.last().zip(beams.last()).map_or(rest, |(pose, beam)| pose.carry(beam, 1.0, rest).0);
+            frame.to_wind(top - rest)
+        };
+        let count = (period_s * SAMPLES_PER_S).round().max(1.0) as usize;
+        let times_s = (0..count).map(|sample| sample as f64 * period_s / count as f64);
+        let (along, across): (Vec<_>, Vec<_>) = times_s
+            .map(|time_s| {
+                let off = off_rest(time_s);
+                ([time_s, f64::from(off.x)], [time_s, f64::from(off.z)])
+            })
+            .unzip();
+        let spectrum = spectrum(&[Transform::new(along.iter().map(|[_, off]| *off), period_s)]);
+        Some(Self { along, across, spectrum, own: own_frequencies(model, leaf_share) })
+    }
+}
+
+/// The beams from the ground to the highest end of the trunk, and that end at rest.
+fn stem_to_top(model: &TreeModel) -> Option<(Vec<BeamDynamics>, Vec3)> {
+    let skeleton = &model.skeleton.beams;
+    let trunk = (0..skeleton.len()).filter(|index| skeleton[*index].order == 0);
+    let top = trunk.max_by(|a, b| skeleton[*a].path(1.0).y.total_cmp(&skeleton[*b].path(1.0).y))?;
+    let mut chain = vec![top];
+    while let Some(parent) = skeleton[chain[chain.len() - 1]].parent {
+        chain.push(parent as usize);
+    }
+    chain.reverse();
+    let linked = |(place, index): (usize, &usize)| {
+        let mut beam = model.beams[*index];
+        beam.parent = if place == 0 { NO_PARENT } else { place as u32 - 1 };
+        beam
+    };
+    Some((chain.iter().enumerate().map(linked).collect(), skeleton[top].path(1.0)))
+}
+
+/// The frequency of a beam, Hz.
+pub fn frequency_hz(beam: &BeamDynamics, leaf_share: f32) -> f32 {
+    let classes = FrequencyClasses::default();
+    classes.lowest_hz * classes.ratio.powf(beam.sway(leaf_share).class)
+}
+
+fn own_frequencies(model: &TreeModel, leaf_share: f32) -> Vec<(&'static str, f64)> {
+    let beams = || model.skeleton.beams.iter().zip(&model.beams);
+    let slowest = |(order, name): (usize, &&'static str)| {
+        let of_order = beams().filter(|(beam, _)| usize::from(beam.order) == order);
+        let hz = of_order.map(|(_, beam)| frequency_hz(beam, leaf_share)).reduce(f32::min)?;
+        Some((*name, f64::from(hz)))
+    };
+    ORDERS.iter().enumerate().filter_map(slowest).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        sway::SwaySettings,
+        tree::{Species, mechanics::tree_sway},
+        wind::{FieldSettings, WindField},
+    };
+    use std::sync::Arc;
+
+    fn motion(speed: f32) -> (TipMotion, TreeModel) {
+        let field = WindField::synthesise(&FieldSettings { speed, ..FieldSettings::default() }).unwrap();
+        let response = WindResponse::new(Arc::new(field), &SwaySettings::default());
+        let model = TreeModel::bake(&Species::default(), 40.0, 1);
+        (TipMotion::of(&model, &response, Vec3::ZERO, 1.0).unwrap(), model)
+    }
+
+    #[test]
+    fn the_top_leans_with_the_wind_and_sways_with_the_trunks_frequency() {
+        let (motion, model) = motion(10.0);
+        let mean = motion.along.iter().map(|[_, off]| off).sum::<f64>() / motion.along.len() as f64;
+        let across = motion.across.iter().map(|[_, off]| off).sum::<f64>() / motion.across.len() as f64;
+        assert!(mean > 1e-3 && across.abs() < 0.5 * mean, "{mean} along, {across} across");
+        let trunk = f64::from(tree_sway(&Species::default(), &model.skeleton).frequency_hz);
+        assert!((motion.own[0].1 / trunk - 1.0).abs() < 0.05, "{:?}, {trunk}", motion.own);
+        // In its own band the top moves more than an octave above it.
+        let at = |hz: f64| {
+            let distance = |band: &&Band| (band.frequency_hz / hz).ln().abs();
+            motion.spectrum.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap().value
+        };
+        assert!(at(trunk) > 4.0 * at(2.0 * trunk));
+    }
+
+    #[test]
+    fn in_a_calm_it_rests() {
+        let (motion, _) = motion(0.0);
+        assert!(motion.along.iter().all(|[_, off]| off.abs() < 1e-6));
+    }
+}

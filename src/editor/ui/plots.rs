@@ -1,0 +1,99 @@
+//! Plots that all look alike.
+
+use bevy_egui::egui::{Color32, RichText, Ui};
+use egui_plot::{Corner, GridInput, GridMark, Legend, Line, LineStyle, Plot, PlotPoints, VLine};
+
+use super::theme::palette;
+use crate::editor::spectrum::Band;
+
+/// A curve of a plot.
+pub struct Curve<'a> {
+    pub name: &'a str,
+    pub points: Vec<[f64; 2]>,
+    pub colour: Color32,
+    /// What is to be, beside what is.
+    pub is_target: bool,
+}
+
+/// What a plot shows besides its curves.
+#[derive(Clone, Copy, Default)]
+pub struct PlotForm<'a> {
+    pub title: &'a str,
+    /// What is along the axes: across and up.
+    pub axes: [&'a str; 2],
+    pub height: f32,
+    /// Whether both axes are decades.
+    pub is_logarithmic: bool,
+    /// Whether the axis across alone is decades.
+    pub has_logarithmic_x: bool,
+    /// Lines across it: a name and a place.
+    pub marks: &'a [(&'static str, f64)],
+}
+
+/// Draws a plot.
+pub fn plot(ui: &mut Ui, form: &PlotForm, curves: Vec<Curve>) {
+    let target = palette(ui.visuals()).target;
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(form.title).strong());
+        ui.weak(format!("{} over {}", form.axes[1], form.axes[0]));
+    });
+    let [is_log_x, is_log_y] = [form.is_logarithmic || form.has_logarithmic_x, form.is_logarithmic];
+    // Spectra and coherences fall: there is room under them.
+    let corner = if is_log_x { Corner::LeftBottom } else { Corner::RightTop };
+    let mut plot = Plot::new(form.title)
+        .height(form.height)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_double_click_reset(false)
+        .show_crosshair(false)
+        .set_margin_fraction(bevy_egui::egui::vec2(0.01, 0.06))
+        .legend(Legend::default().position(corner).text_style(bevy_egui::egui::TextStyle::Small).background_alpha(0.6));
+    if is_log_x {
+        plot = plot.x_grid_spacer(decades).x_axis_formatter(|mark, _| power_of_ten(mark));
+    }
+    if is_log_y {
+        plot = plot.y_grid_spacer(decades).y_axis_formatter(|mark, _| power_of_ten(mark));
+    }
+    plot.show(ui, |plot| {
+        for (name, at) in form.marks {
+            let at = if is_log_x { at.max(1e-12).log10() } else { *at };
+            plot.vline(
+                VLine::new(format!("{name} {at:.2}"), at).name(*name).color(target).style(LineStyle::dashed_dense()),
+            );
+        }
+        for curve in curves {
+            let place = |[x, y]: [f64; 2]| {
+                let x = if is_log_x { x.log10() } else { x };
+                [x, if is_log_y { y.log10() } else { y }]
+            };
+            let points =
+                curve.points.into_iter().map(place).filter(|point| point.iter().all(|value| value.is_finite()));
+            let points = PlotPoints::from_iter(points);
+            let style = if curve.is_target { LineStyle::dashed_loose() } else { LineStyle::Solid };
+            plot.line(Line::new(curve.name, points).color(curve.colour).style(style).width(1.6));
+        }
+    });
+}
+
+/// The points of bands.
+pub fn points(bands: &[Band]) -> Vec<[f64; 2]> {
+    bands.iter().map(|band| [band.frequency_hz, band.value]).collect()
+}
+
+/// Grid lines at every power of ten that is in sight.
+fn decades(input: GridInput) -> Vec<GridMark> {
+    let (low, high) = (input.bounds.0.ceil().max(-40.0) as i32, input.bounds.1.floor().min(40.0) as i32);
+    (low..=high).map(|decade| GridMark { value: f64::from(decade), step_size: 1.0 }).collect()
+}
+
+fn power_of_ten(mark: GridMark) -> String {
+    let decade = mark.value.round() as i32;
+    if (-2..=2).contains(&decade) {
+        return format!("{}", 10_f64.powi(decade));
+    }
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let digits: String = decade.abs().to_string().bytes().map(|digit| DIGITS[usize::from(digit - b'0')]).collect();
+    format!("10{}{digits}", if decade < 0 { "⁻" } else { "" })
+}
