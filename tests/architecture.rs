@@ -26,7 +26,7 @@ use circles::circles;
 use modules::{Crate, File};
 
 /// A room and the rooms it may import. A room that is not here may not exist.
-const MAY_KNOW: [(&str, &[&str]); 14] = [
+const MAY_KNOW: [(&str, &[&str]); 16] = [
     ("wind", &[]),
     ("dynamics", &["wind"]),
     ("texture", &[]),

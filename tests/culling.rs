@@ -36,7 +36,7 @@ fn pictures_are_equal_with_and_without_culling() {
         let eye = Vec3::new(place(), 8.0, place());
         let towards = Vec3::new(place(), -12.0, place());
         forest.look(eye, towards);
-        forest.app.world_mut().insert_resource(ForestCulling { enabled: true, around_m: 0.0, lingering_frames: 0 });
+        forest.app.world_mut().insert_resource(ForestCulling { around_m: 0.0, lingering_frames: 0, ..default() });
         let culled = forest.picture();
         hidden += hidden_cells(&mut forest);
         forest.app.world_mut().insert_resource(ForestCulling { enabled: false, ..default() });

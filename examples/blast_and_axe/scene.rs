@@ -58,7 +58,7 @@ impl Scene for BlastScene {
         Transform::from_translation(eye).looking_at(target, Vec3::Y)
     }
 
-    fn camera_effects() -> impl Bundle {
+    fn camera_effects(&self) -> impl Bundle + use<> {
         haze(900.0)
     }
 

@@ -76,12 +76,12 @@ pub(crate) const ALL_MIPS: f32 = 32.0;
 mod tests {
     use super::*;
 
-    /// Slow waves, as the mean colours of crowns are.
+    /// Slow waves of nearly one hue, as the mean colours of crowns are.
     fn texture(texels: Texels, channels: usize) -> TextureData {
         let mip = |width: usize, height: usize| -> Vec<u8> {
             let texel = |index: usize| {
                 let (x, y) = ((index % width) as f32 / width as f32, (index / width) as f32 / height as f32);
-                (0..channels).map(move |channel| (128.0 + 100.0 * (3.0 * x + 2.0 * y + channel as f32).sin()) as u8)
+                (0..channels).map(move |channel| (128.0 + 100.0 * (3.0 * x + 2.0 * y + 0.2 * channel as f32).sin()) as u8)
             };
             (0..width * height).flat_map(texel).collect()
         };

@@ -110,7 +110,7 @@ fn apply_technique(
     detail.style = if technique.levels { technique.style } else { LevelStyle::Full };
     detail.changes_per_frame = 1_000_000;
     // Pictures of the path may lie seconds apart: what one shows must not stay visible for the next.
-    *culling = ForestCulling { enabled: technique.voxels, around_m: 0.0, lingering_frames: 0 };
+    *culling = ForestCulling { enabled: technique.voxels, around_m: 0.0, lingering_frames: 0, ..default() };
     for mut forest in &mut forests {
         forest.set_if_neq(settings(trees.0, *technique));
     }

@@ -153,7 +153,7 @@ fn crowns_lean_with_the_stem_and_are_thinner_in_winter() {
     let [summer, winter] = [1.0, 0.0].map(|leaves| {
         rows().map(|origin| body.transmittance(&rest, &BodyRay { origin, ..through }, leaves)).sum::<f32>() / 30.0
     });
-    assert!(summer < winter - 0.3 && (0.3..1.0).contains(&winter), "{summer} and {winter}");
+    assert!(summer < winter - 0.3 && (0.3..=1.0).contains(&winter), "{summer} and {winter}");
     let beside = BodyRay { origin: Vec3::new(-40.0, height_m, 60.0), ..through };
     assert_eq!(body.transmittance(&rest, &beside, 1.0), 1.0);
 }
