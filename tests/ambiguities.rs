@@ -15,11 +15,12 @@ use bevy_windwood::SystemTimes;
 use std::{collections::BTreeSet, time::Duration};
 
 /// Pairs of systems whose order is still to be chosen.
-const KNOWN: [&str; 13] = [
+const KNOWN: [&str; 14] = [
     "PostUpdate: another, cull_cells",
     "PostUpdate: another, measure_species",
     "PostUpdate: another, update_posed_trees",
     "PostUpdate: another, upload_frame",
+    "PostUpdate: another, upload_live_trees",
     "PostUpdate: another, write_tree_rows",
     "Update: another, bake_impostor_species",
     "Update: another, finish_preparing_species",
