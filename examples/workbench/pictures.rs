@@ -12,7 +12,7 @@ use bevy_windwood::{
     prelude::*,
 };
 use std::{
-    path::{Path, PathBuf},
+    path::Path,
     time::{Duration, Instant},
 };
 
@@ -128,7 +128,7 @@ fn show(app: &mut App, options: &Options, shot: &Shot) {
 }
 
 /// Opens the file as it is on disk: what a picture before has changed is given up.
-fn open(workbench: &mut Workbench, file: &PathBuf) {
+fn open(workbench: &mut Workbench, file: &Path) {
     workbench.undo_all();
     workbench.open_file(file);
 }

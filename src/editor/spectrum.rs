@@ -52,7 +52,7 @@ pub fn spectrum(series: &[Transform]) -> Vec<Band> {
 /// The root coherence of pairs of series, the real part of `<X Y*> / sqrt(<X X*> <Y Y*>)`, each averaged over the pairs and over
 /// bands: 1 where they are alike, 0 where they share nothing.
 pub fn root_coherence(pairs: &[(&Transform, &Transform)]) -> Vec<Band> {
-    let Some(((first, _), rest)) = pairs.first().zip(Some(&pairs[..])) else { return Vec::new() };
+    let Some(((first, _), rest)) = pairs.first().zip(Some(&pairs)) else { return Vec::new() };
     let sums = |line: usize| {
         rest.iter().fold([0.0; 3], |[cross, xx, yy], (x, y)| {
             let (x, y) = (x.lines[line], y.lines[line]);
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn a_sine_has_half_its_squared_amplitude_at_its_frequency() {
         let sine = of(|time_s| 3.0 * (TAU * 0.5 * time_s).sin() + 7.0);
-        let bands = spectrum(&[sine.clone()]);
+        let bands = spectrum(std::slice::from_ref(&sine));
         assert!((variance(&bands, &sine) - 4.5).abs() < 1e-9);
         let highest = bands.iter().max_by(|a, b| a.value.total_cmp(&b.value)).unwrap();
         assert!((highest.frequency_hz / 0.5 - 1.0).abs() < 0.15, "{highest:?}");

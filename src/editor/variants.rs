@@ -63,7 +63,7 @@ pub fn with_list(species: &Species, path: &str, is_longer: bool) -> Option<Speci
     let mut changed = species.clone();
     let ReflectMut::List(list) = changed.reflect_path_mut(path).ok()?.reflect_mut() else { return None };
     if is_longer {
-        match list.get(list.len().checked_sub(1).unwrap_or_default()).map(|last| last.to_dynamic()) {
+        match list.get(list.len().saturating_sub(1)).map(PartialReflect::to_dynamic) {
             Some(last) => list.push(last.ok()?),
             None => return default_list(species, path),
         }

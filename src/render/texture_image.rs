@@ -81,7 +81,8 @@ mod tests {
         let mip = |width: usize, height: usize| -> Vec<u8> {
             let texel = |index: usize| {
                 let (x, y) = ((index % width) as f32 / width as f32, (index / width) as f32 / height as f32);
-                (0..channels).map(move |channel| (128.0 + 100.0 * (3.0 * x + 2.0 * y + 0.2 * channel as f32).sin()) as u8)
+                (0..channels)
+                    .map(move |channel| (128.0 + 100.0 * (3.0 * x + 2.0 * y + 0.2 * channel as f32).sin()) as u8)
             };
             (0..width * height).flat_map(texel).collect()
         };

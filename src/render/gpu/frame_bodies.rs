@@ -52,7 +52,7 @@ mod tests {
     fn of_too_many_the_nearest_are_written() {
         let places = (0..9).map(|k| Vec3::X * ((k * 4 % 9) as f32)).map(|place| (place, place.x));
         let mut rows = [0.0; 4];
-        assert_eq!(write_nearest(&mut rows, places.clone().take(3), |place| place.length()), 3);
+        assert_eq!(write_nearest(&mut rows, places.clone().take(3), Vec3::length), 3);
         assert_eq!(rows, [0.0, 4.0, 8.0, 0.0], "in their own order while there is room");
         assert_eq!(write_nearest(&mut rows, places, |place| (place - Vec3::X * 8.0).length()), 4);
         assert_eq!(rows, [8.0, 7.0, 6.0, 5.0]);

@@ -112,7 +112,7 @@ fn a_vortex_is_fastest_at_its_core_and_keeps_its_circulation() {
     assert_eq!(vortex().velocity(vortex().place + Vec3::new(1.0, 21.0, 0.0)), Vec3::ZERO);
 }
 
-/// Sadovskii's formulas (1952) for TNT in free air: 0.085/Z + 0.3/Z^2 + 0.8/Z^3 MPa, and a positive phase of 1.2 sqrt(Z) ms.
+/// Sadovskii's formulas (1952) for TNT in free air: 0.085/Z + 0.3/Z^2 + 0.8/Z^3 `MPa`, and a positive phase of 1.2 sqrt(Z) ms.
 #[test]
 fn blasts_have_about_the_pressure_and_duration_that_others_have_found() {
     for scaled_m in [1.0_f32, 2.0, 5.0, 10.0] {
