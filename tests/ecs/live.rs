@@ -107,7 +107,7 @@ fn a_walker_parts_a_hazel_and_leaves_it_as_it_was() {
         app.world_mut().get_mut::<Transform>(walker).expect("it is there").translation.x += 1.5 * FRAME_S;
         app.update();
         let live = app.world().get::<LiveSway>(hazel);
-        most_rad = live.into_iter().flat_map(LiveSway::angles).map(bevy::math::Vec3A::length).fold(most_rad, f32::max);
+        most_rad = live.into_iter().flat_map(LiveSway::angles).map(Vec3A::length).fold(most_rad, f32::max);
     }
     assert!(most_rad > 0.1, "its branches bend by {most_rad} rad");
     app.world_mut().get_mut::<Transform>(walker).expect("it is there").translation.x = 100.0;
