@@ -25,7 +25,7 @@ fn a_ball_is_stopped_by_a_trunk() {
     let trunk = TreeCapsule { a: Vec3::ZERO, b: Vec3::Y * 4.0, radius_m: 0.3, beam: 0 };
     let colliders = TreeColliders { capsules: vec![trunk] };
     let tree = app.world_mut().spawn((colliders, Transform::from_xyz(5.0, 0.0, 0.0))).id();
-    let mut throw = |app: &mut App| {
+    let throw = |app: &mut App| {
         let ball = (RigidBody::Dynamic, Collider::sphere(0.2), LinearVelocity(Vec3::X * 6.0), GravityScale(0.0));
         let ball = app.world_mut().spawn((ball, Transform::from_xyz(0.0, 2.0, 0.0))).id();
         (0..120).for_each(|_| app.update());
