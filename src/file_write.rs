@@ -5,10 +5,13 @@
 
 use std::{
     ffi::OsString,
-    fs::{self, File},
+    fs::{self, File, OpenOptions},
     io::{self, Write},
     path::{Path, PathBuf},
 };
+
+/// Other names that are tried for the new file, if rests of killed programs have the first ones: they are called `.NAME.NUMBER.part`.
+const NAMES_TRIED: u32 = 64;
 
 /// Replaces the content of a file, or creates it. A link is followed, and the file keeps its permissions.
 ///
@@ -22,20 +25,37 @@ pub(crate) fn replace_file(path: &Path, content: &[u8]) -> io::Result<()> {
 ///
 /// # Errors
 /// As above, and where `write` fails.
-pub(crate) fn replace_file_with(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
+fn replace_file_with(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let part = part_of(&path)?;
-    let written = write_part(&part, &path, write).and_then(|()| fs::rename(&part, &path));
+    let (part, file) = create_part(&path)?;
+    let written = fill(file, &path, write).and_then(|()| fs::rename(&part, &path));
     if written.is_err() {
         // Whether it can be removed or not, the error to tell is that of the writing.
         let _ = fs::remove_file(&part);
         return written;
     }
-    sync_folder(&path)
+    sync_folder(&path);
+    Ok(())
 }
 
-fn write_part(part: &Path, path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
-    let mut file = File::create(part)?;
+/// A new hidden file in the same folder, which no other program writes to.
+fn create_part(path: &Path) -> io::Result<(PathBuf, File)> {
+    let name = path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the path names no file"))?;
+    let mut number = 0;
+    loop {
+        let mut hidden = OsString::from(".");
+        hidden.push(name);
+        hidden.push(format!(".{}-{number}.part", std::process::id()));
+        let part = path.with_file_name(hidden);
+        match OpenOptions::new().write(true).create_new(true).open(&part) {
+            Ok(file) => return Ok((part, file)),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && number < NAMES_TRIED => number += 1,
+            Err(error) => return Err(error),
+        }
+    }
+}
+
+fn fill(mut file: File, path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
     if let Ok(old) = fs::metadata(path) {
         file.set_permissions(old.permissions())?;
     }
@@ -43,22 +63,12 @@ fn write_part(part: &Path, path: &Path, write: impl FnOnce(&mut File) -> io::Res
     file.sync_all()
 }
 
-/// A hidden name in the same folder, of this process alone.
-fn part_of(path: &Path) -> io::Result<PathBuf> {
-    let name = path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the path names no file"))?;
-    let mut hidden = OsString::from(".");
-    hidden.push(name);
-    hidden.push(format!(".{}.part", std::process::id()));
-    Ok(path.with_file_name(hidden))
-}
-
-/// Brings the new name to the disk. Only Unix opens folders.
-fn sync_folder(path: &Path) -> io::Result<()> {
-    if !cfg!(unix) {
-        return Ok(());
+/// Brings the new name to the disk. Where folders cannot be synced, the file itself is on the disk all the same.
+fn sync_folder(path: &Path) {
+    if cfg!(unix) {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
     }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    File::open(folder)?.sync_all()
 }
 
 #[cfg(test)]
@@ -96,6 +106,16 @@ mod tests {
         assert_eq!(error.unwrap_err().kind(), io::ErrorKind::StorageFull);
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         assert_eq!(names(folder.path()), ["oak.species.ron"]);
+    }
+
+    #[test]
+    fn rests_of_killed_programs_are_stepped_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let rest = folder.path().join(format!(".oak.glb.{}-0.part", std::process::id()));
+        fs::write(&rest, b"half").unwrap();
+        replace_file(&folder.path().join("oak.glb"), b"whole").unwrap();
+        assert_eq!(fs::read(&rest).unwrap(), b"half");
+        assert_eq!(fs::read(folder.path().join("oak.glb")).unwrap(), b"whole");
     }
 
     #[cfg(unix)]

@@ -63,7 +63,7 @@
 
 mod background;
 mod constants;
-#[cfg(feature = "editor")]
+#[cfg(any(feature = "editor", feature = "export"))]
 mod file_write;
 mod ground;
 mod interpolation;

@@ -2,36 +2,24 @@
 
 use bevy::{prelude::*, time::TimeUpdateStrategy};
 use bevy_windwood::{prelude::*, tree::SpeciesModels, tree::TreeModel};
-use std::{path::Path, time::Duration};
+use server::{server_app, shipped_assets};
+use std::time::Duration;
 
 #[path = "ecs/live.rs"]
 mod live;
+#[path = "support/server.rs"]
+mod server;
 #[path = "ecs/wind_changes.rs"]
 mod wind_changes;
 
 const FRAME_S: f32 = 1.0 / 30.0;
 
-/// An app with the minimal plugins, whose assets are those of `folder`.
-fn app_in(folder: &Path) -> App {
-    let mut app = App::new();
-    app.add_plugins((
-        MinimalPlugins,
-        TransformPlugin,
-        AssetPlugin { file_path: folder.display().to_string(), ..default() },
-        WindwoodMinimalPlugins,
-    ));
-    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(FRAME_S)));
-    app.finish();
-    app.cleanup();
-    app
+fn frame() -> Duration {
+    Duration::from_secs_f32(FRAME_S)
 }
 
 fn app() -> App {
-    app_in(&shipped())
-}
-
-fn shipped() -> std::path::PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets")
+    server_app(&shipped_assets(), frame())
 }
 
 /// Lets background work finish, with the clock standing still, until `done`.
@@ -40,7 +28,7 @@ fn wait_until(app: &mut App, what: &str, done: impl Fn(&mut World) -> bool) {
     for _ in 0..6000 {
         app.update();
         if done(app.world_mut()) {
-            app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(FRAME_S)));
+            app.insert_resource(TimeUpdateStrategy::ManualDuration(frame()));
             return;
         }
         std::thread::sleep(Duration::from_millis(5));
@@ -252,9 +240,9 @@ fn a_changed_species_file_is_baked_again_and_a_broken_one_is_ignored() {
     let folder = tempfile::tempdir().expect("a folder for the test");
     std::fs::create_dir(folder.path().join("species")).expect("it can be made");
     let file = folder.path().join("species/oak.species.ron");
-    let good = std::fs::read_to_string(shipped().join("species/oak.species.ron")).expect("the oak is shipped");
+    let good = std::fs::read_to_string(shipped_assets().join("species/oak.species.ron")).expect("the oak is shipped");
     std::fs::write(&file, &good).expect("written");
-    let mut app = app_in(folder.path());
+    let mut app = server_app(folder.path(), frame());
     let tree = plant(&mut app, "oak", Vec3::ZERO);
     wait_for_trees(&mut app);
     let first = app.world().get::<Grown>(tree).expect("grown").model.clone();

@@ -17,6 +17,8 @@ mod loaders;
 mod note;
 #[path = "fuzz/sequences.rs"]
 mod sequences;
+#[path = "support/server.rs"]
+mod server;
 #[path = "../tools/characterise/table/mod.rs"]
 #[expect(dead_code, reason = "the example reads files with it, these tests text")]
 mod table;

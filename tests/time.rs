@@ -1,8 +1,12 @@
 //! Time as a game has it: paused, slow, saved and loaded, and running for weeks.
 
+#[path = "support/server.rs"]
+mod server;
+
 use bevy::{ecs::system::RunSystemOnce, prelude::*, time::TimeUpdateStrategy};
 use bevy_windwood::{prelude::*, sway::TreePose};
-use std::{path::Path, time::Duration};
+use server::{server_app, shipped_assets};
+use std::time::Duration;
 
 const FRAME: Duration = Duration::from_millis(20);
 /// Of the default field, s; that of the fast gusts and that of flutter divide it.
@@ -10,18 +14,8 @@ const PERIOD_S: f64 = 128.0;
 
 /// An app with a birch in a wind of 12 m/s, both of which are there.
 fn app() -> (App, Entity) {
-    let mut app = App::new();
-    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
-    app.add_plugins((
-        MinimalPlugins,
-        TransformPlugin,
-        AssetPlugin { file_path: assets.display().to_string(), ..default() },
-        WindwoodMinimalPlugins,
-    ));
-    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO))
-        .insert_resource(Wind { speed: 12.0, ..default() });
-    app.finish();
-    app.cleanup();
+    let mut app = server_app(&shipped_assets(), Duration::ZERO);
+    app.insert_resource(Wind { speed: 12.0, ..default() });
     let birch = app.world().resource::<AssetServer>().load("species/birch.species.ron");
     let tree = Tree::new(birch).with_seed(1).with_age(20.0);
     let tree = app.world_mut().spawn((tree, Articulated::default(), Transform::from_xyz(7.0, 0.0, 3.0))).id();

@@ -1,28 +1,21 @@
 //! Rays, colliders and listeners as a game asks for them, without rendering.
 
+#[path = "support/server.rs"]
+mod server;
+
 use bevy::{ecs::system::RunSystemOnce, prelude::*, time::TimeUpdateStrategy};
 use bevy_windwood::{
     prelude::*,
     query::{TreePlaces, TreeTrace, WindAt},
     tree::{TreeModel, body::TreeCapsule},
 };
-use std::{path::Path, time::Duration};
+use server::{server_app, shipped_assets};
+use std::time::Duration;
 
 const FRAME_S: f32 = 1.0 / 30.0;
 
 fn app() -> App {
-    let mut app = App::new();
-    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
-    app.add_plugins((
-        MinimalPlugins,
-        TransformPlugin,
-        AssetPlugin { file_path: assets.display().to_string(), ..default() },
-        WindwoodMinimalPlugins,
-    ));
-    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(FRAME_S)));
-    app.finish();
-    app.cleanup();
-    app
+    server_app(&shipped_assets(), Duration::from_secs_f32(FRAME_S))
 }
 
 fn plant(app: &mut App, species: &str, at: Transform) -> Entity {

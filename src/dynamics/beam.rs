@@ -138,8 +138,7 @@ impl BeamSway {
     fn local_wind(&self, wind: &BeamWind, scale: f32) -> LocalWind {
         let loads = wind.stand.loads(self.load_height_m * scale);
         let speed_m_s = loads.mean.sqrt() * wind.stand.table_speed_m_s();
-        let folding_m_s = if speed_m_s > FOLDING_SPEED_M_S { speed_m_s } else { FOLDING_SPEED_M_S };
-        let folded = (folding_m_s / DRAG_SPEED_M_S).powf(self.drag_exponent);
+        let folded = drag_share(speed_m_s, self.drag_exponent);
         let gusts = (1.0 + 0.5 * self.drag_exponent) * folded;
         let damping_ratio = wind.grid.damping_ratios[0] + gusts * speed_m_s * self.drag_damping_s_m;
         LocalWind { loads, folded, gusts, damping_ratio }
@@ -161,6 +160,13 @@ impl BeamSway {
     }
 }
 
+/// Drag coefficient at a speed, m/s, over that at [`DRAG_SPEED_M_S`]: crowns fold away as a power of the speed, and not below
+/// [`FOLDING_SPEED_M_S`].
+#[must_use]
+pub(super) fn drag_share(speed_m_s: f32, drag_exponent: f32) -> f32 {
+    (speed_m_s.max(FOLDING_SPEED_M_S) / DRAG_SPEED_M_S).powf(drag_exponent)
+}
+
 /// Bounds hold for instances up to this scale.
 const TALLEST_SCALE: f32 = 2.0;
 /// Loads nearer to the ground count as at this height, m, for bounds.
@@ -177,22 +183,7 @@ pub(crate) fn most_pressure_share(mean: &MeanWind) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{dynamics::FrequencyClasses, wind::LogProfile};
-
-    const OAK: BeamSway = BeamSway {
-        gain: 1e-3,
-        class: 8.0,
-        averaging_speed_m_s: 0.9,
-        drag_damping_s_m: 5e-3,
-        load_height_m: 10.0,
-        drag_exponent: -0.35,
-    };
-
-    fn wind(speed_m_s: f32) -> BeamWind {
-        let mean = MeanWind::new(&LogProfile::from_reference(speed_m_s, 0.1, 0.0), 10.0);
-        let grid = OscillatorGrid::new(FrequencyClasses::default(), 0.05, speed_m_s, 10.0);
-        BeamWind { stand: StandWind::open(mean), grid }
-    }
+    use crate::dynamics::test_beams::{OAK, wind};
 
     /// Loads grow with the speed to the power 2 + V, as the deflection in a steady wind does.
     #[test]

@@ -1,19 +1,8 @@
 //! Files that are old or new, never half.
-//!
-//! A file is written beside its place under another name, forced to the disk, and then given its name, which file systems do in one
-//! step. Whatever happens before that, the old file is whole; a rest that a killed program leaves is called `.NAME.NUMBER.part`.
 
 use super::error::ExportError;
-use crate::setting::SettingError;
-use std::{
-    ffi::OsString,
-    fs::{self, File, OpenOptions},
-    io::{self, Write},
-    path::{Path, PathBuf},
-};
-
-/// Other names that are tried for a part, if rests of killed programs have the first ones.
-const NAMES_TRIED: u32 = 64;
+use crate::{file_write::replace_file, setting::SettingError};
+use std::path::Path;
 
 /// Files that belong together, each with its name, without a folder.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -35,49 +24,7 @@ impl ExportedFiles {
 /// # Errors
 /// [`ExportError::Write`] with the path and the reason.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ExportError> {
-    replace(path, bytes).map_err(|source| ExportError::Write { path: path.to_owned(), source })
-}
-
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let name = path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "it names no file"))?;
-    let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let (part, file) = create_part(folder, name.to_os_string())?;
-    let written = fill(file, bytes).and_then(|()| fs::rename(&part, path));
-    if written.is_err() {
-        // What went wrong first is what is told.
-        let _ = fs::remove_file(&part);
-    }
-    written?;
-    sync_folder(folder);
-    Ok(())
-}
-
-/// A new file in the folder, which no other program writes to.
-fn create_part(folder: &Path, name: OsString) -> io::Result<(PathBuf, File)> {
-    let mut number = 0;
-    loop {
-        let mut part = OsString::from(".");
-        part.push(&name);
-        part.push(format!(".{}-{number}.part", std::process::id()));
-        let part = folder.join(part);
-        match OpenOptions::new().write(true).create_new(true).open(&part) {
-            Ok(file) => return Ok((part, file)),
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && number < NAMES_TRIED => number += 1,
-            Err(error) => return Err(error),
-        }
-    }
-}
-
-fn fill(mut file: File, bytes: &[u8]) -> io::Result<()> {
-    file.write_all(bytes)?;
-    file.sync_all()
-}
-
-/// Has the disk keep the new name as well. Where folders cannot be synced, the file itself is on the disk all the same.
-fn sync_folder(folder: &Path) {
-    if cfg!(unix) {
-        let _ = File::open(folder).and_then(|folder| folder.sync_all());
-    }
+    replace_file(path, bytes).map_err(|source| ExportError::Write { path: path.to_owned(), source })
 }
 
 /// Refuses what is no name for files that name each other: OBJ ends a name at a space, and a folder in it would lead elsewhere.
@@ -92,6 +39,7 @@ pub(super) fn require_file_name(name: &str) -> Result<(), SettingError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     fn names(folder: &Path) -> Vec<String> {
         let mut names: Vec<String> =
@@ -130,15 +78,5 @@ mod tests {
         let error = write_atomically(&path, b"new").unwrap_err();
         assert!(matches!(&error, ExportError::Write { path: told, .. } if *told == path), "{error}");
         assert!(names(folder.path()).is_empty());
-    }
-
-    #[test]
-    fn rests_of_killed_programs_are_stepped_over() {
-        let folder = tempfile::tempdir().unwrap();
-        let rest = folder.path().join(format!(".oak.glb.{}-0.part", std::process::id()));
-        fs::write(&rest, b"half").unwrap();
-        write_atomically(&folder.path().join("oak.glb"), b"whole").unwrap();
-        assert_eq!(fs::read(&rest).unwrap(), b"half");
-        assert_eq!(fs::read(folder.path().join("oak.glb")).unwrap(), b"whole");
     }
 }

@@ -1,7 +1,10 @@
 //! A game that does anything in any order: afterwards everything is a number, belongs to something that is there, and goes with it.
 
-use super::{from_environment, seed};
-use bevy::{ecs::system::RunSystemOnce, prelude::*, time::TimeUpdateStrategy};
+use super::{
+    from_environment, seed,
+    server::{server_app, shipped_assets},
+};
+use bevy::{ecs::system::RunSystemOnce, prelude::*};
 use bevy_windwood::{
     prelude::*,
     query::TreePlaces,
@@ -12,7 +15,7 @@ use bevy_windwood::{
     tree::SpeciesModels,
 };
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
-use std::{fs, path::Path, time::Duration};
+use std::{fs, time::Duration};
 
 /// Sequences with every test, and in a long run.
 const FEW: u32 = 60;
@@ -34,17 +37,8 @@ struct Game {
 
 impl Game {
     fn new(seed: u64) -> Self {
-        let mut app = App::new();
-        let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
-        app.add_plugins((
-            MinimalPlugins,
-            TransformPlugin,
-            AssetPlugin { file_path: assets.display().to_string(), ..default() },
-            WindwoodMinimalPlugins,
-        ));
-        app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(40)));
-        app.finish();
-        app.cleanup();
+        let assets = shipped_assets();
+        let mut app = server_app(&assets, Duration::from_millis(40));
         let load = |name: &str| {
             let text =
                 fs::read_to_string(assets.join("species").join(format!("{name}.species.ron"))).expect("it is there");

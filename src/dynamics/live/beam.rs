@@ -2,7 +2,7 @@
 
 use crate::{
     dynamics::{
-        beam::{BeamDynamics, BeamWind, DRAG_SPEED_M_S, FOLDING_SPEED_M_S},
+        beam::{BeamDynamics, BeamWind, drag_share},
         pose::SLOPE_TIP,
     },
     wind::cross_flow_pressure,
@@ -57,8 +57,7 @@ impl LiveBeam {
             return Vec3A::ZERO;
         }
         let pressure = |velocity: Vec3| {
-            let speed = velocity.length().max(FOLDING_SPEED_M_S) / DRAG_SPEED_M_S;
-            cross_flow_pressure(velocity, self.direction) * speed.powf(self.drag_exponent)
+            cross_flow_pressure(velocity, self.direction) * drag_share(velocity.length(), self.drag_exponent)
         };
         let angle = self.gain * (pressure(wind + source) - pressure(wind));
         if angle.is_finite() { angle.into() } else { Vec3A::ZERO }
@@ -68,51 +67,18 @@ impl LiveBeam {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        dynamics::{
-            beam::{BeamSway, NO_PARENT},
-            frequency_classes::FrequencyClasses,
-            mean_wind::MeanWind,
-            oscillator_grid::OscillatorGrid,
-            stand_wind::StandWind,
-        },
-        wind::LogProfile,
+    use crate::dynamics::{
+        beam::BeamSway,
+        test_beams::{OAK, upright, wind},
     };
 
-    const SWAY: BeamSway = BeamSway {
-        gain: 1e-3,
-        class: 8.0,
-        averaging_speed_m_s: 0.9,
-        drag_damping_s_m: 5e-3,
-        load_height_m: 10.0,
-        drag_exponent: -0.35,
-    };
-
-    fn beam(sway: BeamSway) -> BeamDynamics {
-        BeamDynamics {
-            base: Vec3::ZERO,
-            length_m: 14.0,
-            direction: Vec3::Y,
-            attach: 0.0,
-            parent: NO_PARENT,
-            angle_limit_rad: 1.1,
-            compliance_rad_n_m: 1e-6,
-            in_leaf: sway,
-            bare: sway,
-        }
-    }
-
-    fn wind(speed_m_s: f32) -> BeamWind {
-        let mean = MeanWind::new(&LogProfile::from_reference(speed_m_s, 0.1, 0.0), 10.0);
-        let grid = OscillatorGrid::new(FrequencyClasses::default(), 0.05, speed_m_s, 10.0);
-        BeamWind { stand: StandWind::open(mean), grid }
-    }
+    const LENGTH_M: f32 = 14.0;
 
     /// The table's own answer to the mean wind, at the height at which that is given.
     #[test]
     fn a_steady_source_bends_a_beam_as_so_much_more_wind_does() {
-        let table = |speed_m_s: f32| SLOPE_TIP * SWAY.answer(&wind(speed_m_s), 1.0).mean_gain * speed_m_s * speed_m_s;
-        let live = LiveBeam::new(&beam(SWAY), &wind(6.0), 1.0, 1.0);
+        let table = |speed_m_s: f32| SLOPE_TIP * OAK.answer(&wind(speed_m_s), 1.0).mean_gain * speed_m_s * speed_m_s;
+        let live = LiveBeam::new(&upright(OAK, LENGTH_M), &wind(6.0), 1.0, 1.0);
         for source_m_s in [-3.0, 2.0, 14.0] {
             let added = live.load(Vec3::X * 6.0, Vec3::X * source_m_s);
             let expected = table(6.0 + source_m_s) - table(6.0);
@@ -125,24 +91,24 @@ mod tests {
     #[test]
     fn spreads_are_sizes_and_do_not_depend_on_the_wind() {
         let own_hz = 0.05 * 1.22_f32.powi(8);
-        let live = LiveBeam::new(&beam(SWAY), &wind(6.0), 1.0, 1.0);
+        let live = LiveBeam::new(&upright(OAK, LENGTH_M), &wind(6.0), 1.0, 1.0);
         assert!((live.spread_m - 0.9 / own_hz).abs() < 1e-4);
         assert_eq!(live.load_at, Vec3::Y * 10.0);
         // A tree twice as large sways half as fast: between three and four classes.
-        assert_eq!(LiveBeam::new(&beam(SWAY), &wind(6.0), 2.0, 1.0).class, 5);
+        assert_eq!(LiveBeam::new(&upright(OAK, LENGTH_M), &wind(6.0), 2.0, 1.0).class, 5);
     }
 
     #[test]
     fn any_beam_in_any_wind_has_a_finite_load() {
         for odd in [f32::NAN, f32::INFINITY, -1.0, 0.0, 1e30] {
             for sway in [
-                BeamSway { gain: odd, ..SWAY },
-                BeamSway { class: odd, ..SWAY },
-                BeamSway { averaging_speed_m_s: odd, ..SWAY },
-                BeamSway { load_height_m: odd, ..SWAY },
-                BeamSway { drag_exponent: odd, ..SWAY },
+                BeamSway { gain: odd, ..OAK },
+                BeamSway { class: odd, ..OAK },
+                BeamSway { averaging_speed_m_s: odd, ..OAK },
+                BeamSway { load_height_m: odd, ..OAK },
+                BeamSway { drag_exponent: odd, ..OAK },
             ] {
-                let live = LiveBeam::new(&beam(sway), &wind(6.0), odd, odd);
+                let live = LiveBeam::new(&upright(sway, LENGTH_M), &wind(6.0), odd, odd);
                 assert!(live.load_at.is_finite() && live.spread_m >= 0.0 && live.damped.is_finite(), "{live:?}");
                 assert!(live.load(Vec3::X, Vec3::splat(odd)).is_finite());
             }

@@ -12,7 +12,7 @@ use crate::{
         fields::{Field, Section, copy_at, fields_of, is_same_at},
         stage::Stage,
         tip_motion::TipMotion,
-        wind_measures::{COMPONENTS, WindMeasures},
+        wind_measures::{COMPONENTS, Comparison, WindMeasures},
     },
     setting::SettingError,
     wind::{FieldSettings, Wind},
@@ -119,6 +119,14 @@ fn facts_table(ui: &mut Ui, facts: WindFacts) {
     }
 }
 
+/// What was measured, and what it should be.
+fn beside_target<'a>(name: &'a str, comparison: &Comparison, colour: Color32, target: Color32) -> [Curve<'a>; 2] {
+    [
+        Curve { name, points: points(&comparison.measured), colour, is_target: false },
+        Curve { name: "target", points: points(&comparison.target), colour: target, is_target: true },
+    ]
+}
+
 /// Draws what the wind is like.
 pub fn wind_plots(ui: &mut Ui, facts: WindFacts) {
     let palette = palette(ui.visuals());
@@ -143,26 +151,14 @@ pub fn wind_plots(ui: &mut Ui, facts: WindFacts) {
         plot(ui, &form("Speed at one place", ["s", "m/s"]), vec![series]);
         let mut curves = Vec::new();
         for ((spectrum, (_, name)), colour) in measures.spectra.iter().zip(COMPONENTS).zip(palette.lines) {
-            curves.push(Curve { name, points: points(&spectrum.measured), colour, is_target: false });
-            curves.push(Curve {
-                name: "target",
-                points: points(&spectrum.target),
-                colour: palette.target,
-                is_target: true,
-            });
+            curves.extend(beside_target(name, spectrum, colour, palette.target));
         }
         let spectra = PlotForm { is_logarithmic: true, ..form("Spectrum beside its target", ["Hz", "m²/s² per Hz"]) };
         plot(ui, &spectra, curves);
         let mut curves = Vec::new();
         let names: Vec<String> = measures.coherence.iter().map(|(lateral_m, _)| format!("{lateral_m:.0} m")).collect();
         for (((_, coherence), colour), name) in measures.coherence.iter().zip(palette.lines).zip(&names) {
-            curves.push(Curve { name, points: points(&coherence.measured), colour, is_target: false });
-            curves.push(Curve {
-                name: "target",
-                points: points(&coherence.target),
-                colour: palette.target,
-                is_target: true,
-            });
+            curves.extend(beside_target(name, coherence, colour, palette.target));
         }
         let coherence =
             PlotForm { has_logarithmic_x: true, ..form("Coherence across the wind", ["Hz", "root coherence"]) };

@@ -1,9 +1,8 @@
 //! How much of a spray's card its leaves cover, without its texture.
 
 use bevy::math::Vec2;
-use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
 
-use super::{outline, settings::Leaf, spray::shoots};
+use super::{outline, settings::Leaf, spray::spray};
 use crate::sequence::r2;
 
 /// Places that are looked at: the share is found to a hundredth or two.
@@ -12,11 +11,7 @@ const PLACES: usize = 512;
 /// Share of a card of the spray of that seed that shows leaves, 0 to 1: as its mask does, but for twigs and stalks.
 #[must_use]
 pub(in crate::tree) fn card_cover(leaf: &Leaf, seed: u64) -> f32 {
-    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let mut leaves = Vec::new();
-    for shoot in shoots(leaf, &mut random) {
-        shoot.place_leaves(leaf, &mut leaves, &mut random);
-    }
+    let (_, leaves) = spray(leaf, seed);
     let margin = outline::outline(leaf);
     let middle = Vec2::new(0.5, 0.0);
     let blade_reach = margin.iter().map(|point| point.distance(middle)).fold(0.5, f32::max);

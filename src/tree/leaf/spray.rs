@@ -4,7 +4,7 @@
 //! that the texture holds the region `|across| <= min(along, 1 - along)`.
 
 use bevy::math::Vec2;
-use rand::{RngExt, rngs::Xoshiro256PlusPlus};
+use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 
 use super::settings::{Leaf, LeafArrangement, LeafShape};
 
@@ -47,8 +47,17 @@ const PAIR_RAD: f32 = 0.22;
 /// Margin of the square that stays empty, so that no leaf is cut straight.
 const MARGIN: f32 = 0.02;
 
+/// The shoots of the spray of that seed, and the leaves on them.
+pub(super) fn spray(leaf: &Leaf, seed: u64) -> (Vec<Shoot>, Vec<PlacedLeaf>) {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let shoots = shoots(leaf, &mut random);
+    let mut leaves = Vec::new();
+    shoots.iter().for_each(|shoot| shoot.place_leaves(leaf, &mut leaves, &mut random));
+    (shoots, leaves)
+}
+
 /// The main shoot and its side shoots, left and right by turns, as long as the square allows.
-pub(super) fn shoots(leaf: &Leaf, random: &mut Xoshiro256PlusPlus) -> Vec<Shoot> {
+fn shoots(leaf: &Leaf, random: &mut Xoshiro256PlusPlus) -> Vec<Shoot> {
     let reach = 0.96 - 0.85 * leaf.length * (1.0 + leaf.stalk);
     let mut shoots = vec![Shoot { root: Vec2::ZERO, tip: Vec2::new(reach, 0.0), radius: 0.006 }];
     for index in 0..leaf.shoots {

@@ -5,12 +5,11 @@
 //! the signed distance to the margin, in texels. Each leaf shades what lies below it.
 
 use bevy::math::Vec2;
-use rand::{SeedableRng, rngs::Xoshiro256PlusPlus};
 
 use super::{
     blade::{Blade, Place},
     settings::Leaf,
-    spray::{PlacedLeaf, Shoot, shoots},
+    spray::{PlacedLeaf, Shoot, spray},
 };
 use crate::{
     texture::{
@@ -45,10 +44,7 @@ const SHADE_REACH: f32 = 0.012;
 #[must_use]
 pub fn leaf_textures(foliage: &Foliage, green: &GreenWood, seed: u64) -> LeafTextures {
     let leaf = &foliage.leaf;
-    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let shoots = shoots(leaf, &mut random);
-    let mut leaves = Vec::new();
-    shoots.iter().for_each(|shoot| shoot.place_leaves(leaf, &mut leaves, &mut random));
+    let (shoots, mut leaves) = spray(leaf, seed);
     // The topmost leaves come last: sprays are seen from above, where the lighter leaves are.
     leaves.sort_by(|a, b| a.level.total_cmp(&b.level));
 
@@ -75,10 +71,7 @@ const SPUR: f32 = 0.4;
 #[must_use]
 pub fn bare_spray_texture(foliage: &Foliage, green: &GreenWood, seed: u64) -> TextureData {
     let leaf = &foliage.leaf;
-    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let shoots = shoots(leaf, &mut random);
-    let mut leaves = Vec::new();
-    shoots.iter().for_each(|shoot| shoot.place_leaves(leaf, &mut leaves, &mut random));
+    let (shoots, leaves) = spray(leaf, seed);
     let mut canvas = SprayCanvas::new(leaf);
     let [twig, side_shoots] = green.of_spray(leaf.twig_colour);
     let thinnest = THINNEST_TEXELS / TEXELS;

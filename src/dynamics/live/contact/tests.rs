@@ -1,32 +1,18 @@
 use super::*;
-use crate::{
-    dynamics::{
-        FrequencyClasses, LiveBeam, LiveSteps, LiveTree, MeanWind, OscillatorGrid, StandWind, TreePoser,
-        beam::{BeamSway, BeamWind, NO_PARENT},
-        live::BeamLoad,
-    },
-    wind::LogProfile,
+use crate::dynamics::{
+    LiveBeam, LiveSteps, LiveTree, TreePoser,
+    beam::{BeamSway, BeamWind},
+    live::BeamLoad,
+    test_beams,
 };
 
 fn wind() -> BeamWind {
-    let mean = MeanWind::new(&LogProfile::from_reference(5.0, 0.1, 0.0), 10.0);
-    let grid = OscillatorGrid::new(FrequencyClasses::default(), 0.05, 5.0, 10.0);
-    BeamWind { stand: StandWind::open(mean), grid }
+    test_beams::wind(5.0)
 }
 
 fn beam(base: Vec3, direction: Vec3, length_m: f32, compliance_rad_n_m: f32, class: f32) -> BeamDynamics {
     let sway = BeamSway { gain: 1e-4, class, load_height_m: 1.0, ..BeamSway::default() };
-    BeamDynamics {
-        base,
-        length_m,
-        direction,
-        attach: 0.5,
-        parent: NO_PARENT,
-        angle_limit_rad: 1.1,
-        compliance_rad_n_m,
-        in_leaf: sway,
-        bare: sway,
-    }
+    BeamDynamics { base, direction, attach: 0.5, compliance_rad_n_m, ..test_beams::upright(sway, length_m) }
 }
 
 /// A stiff trunk of 4 m with a branch of 2 m along x halfway up, and a twig at the end of that.

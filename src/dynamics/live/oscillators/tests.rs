@@ -1,22 +1,14 @@
 use super::*;
-use crate::{
-    dynamics::{
-        beam::{BeamDynamics, BeamSway, BeamWind, NO_PARENT},
-        frequency_classes::FrequencyClasses,
-        mean_wind::MeanWind,
-        stand_wind::StandWind,
-    },
-    wind::LogProfile,
+use crate::dynamics::{
+    beam::{BeamSway, BeamWind},
+    test_beams,
 };
-use bevy::math::Vec3;
 use rustfft::num_complex::Complex;
 
 const FRAME_S: f64 = 1.0 / 60.0;
 
 fn wind() -> BeamWind {
-    let mean = MeanWind::new(&LogProfile::from_reference(8.0, 0.1, 0.0), 10.0);
-    let grid = OscillatorGrid::new(FrequencyClasses::default(), 0.05, 8.0, 10.0);
-    BeamWind { stand: StandWind::open(mean), grid }
+    test_beams::wind(8.0)
 }
 
 /// A beam of a class, with drag that damps it.
@@ -29,18 +21,7 @@ fn beam(class: f32) -> LiveBeam {
         averaging_speed_m_s: 0.1,
         drag_exponent: 0.0,
     };
-    let beam = BeamDynamics {
-        base: Vec3::ZERO,
-        length_m: 1.0,
-        direction: Vec3::Y,
-        attach: 0.0,
-        parent: NO_PARENT,
-        angle_limit_rad: 1.1,
-        compliance_rad_n_m: 1e-6,
-        in_leaf: sway,
-        bare: sway,
-    };
-    LiveBeam::new(&beam, &wind(), 1.0, 1.0)
+    LiveBeam::new(&test_beams::upright(sway, 1.0), &wind(), 1.0, 1.0)
 }
 
 fn steady(load: f32) -> BeamLoad {
