@@ -45,7 +45,7 @@ fn pose(criterion: &mut Criterion) {
         bencher.iter(|| {
             tau_s += 1.0 / 60.0;
             table.responses(&place(tau_s), poser.rows(), &mut responses);
-            poser.pose(&responses, &mut poses);
+            poser.pose(&responses, Vec3::X, &mut poses);
             black_box(&mut poses);
         });
     });

@@ -2,6 +2,7 @@
 
 use crate::support::{
     arguments::in_range,
+    daylight::Daylight,
     options::{ForestDistanceOptions, SceneOptions},
 };
 use clap::{Parser, ValueEnum};
@@ -23,6 +24,9 @@ pub struct Options {
     /// Where to look from.
     #[arg(long, value_enum, default_value_t = View::Hillside)]
     pub view: View,
+    /// The state of the sky.
+    #[arg(long, value_enum, default_value_t = Light::Afternoon)]
+    pub light: Light,
     /// A file of elevations: a GeoTIFF, an ESRI ASCII grid, an SRTM tile, or a PNG with 16 bits of grey in metres, first row northernmost.
     #[arg(long)]
     pub ground: Option<PathBuf>,
@@ -44,6 +48,27 @@ pub enum View {
     Inside,
     /// From above.
     Aerial,
+}
+
+/// A state of the sky.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Light {
+    /// A clear afternoon.
+    Afternoon,
+    /// The sun is about to set.
+    Dusk,
+    /// Clouds.
+    Storm,
+}
+
+impl Light {
+    pub fn daylight(self) -> Daylight {
+        match self {
+            Self::Afternoon => Daylight::AFTERNOON,
+            Self::Dusk => Daylight::DUSK,
+            Self::Storm => Daylight::STORM,
+        }
+    }
 }
 
 fn extent(text: &str) -> Result<f32, String> {

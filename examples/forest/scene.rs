@@ -5,7 +5,6 @@ use crate::{
     options::{Options, View},
     small,
     support::{
-        daylight::{haze, spawn_daylight},
         landscape::{FINEST_CELL_M, Landscape},
         options::SceneOptions,
         scene::Scene,
@@ -77,7 +76,7 @@ impl Scene for ForestScene {
             View::Inside => INSIDE,
             View::Hillside | View::Edge | View::Aerial => Exposure::default(),
         };
-        (haze(6500.0), exposure)
+        (self.options.light.daylight().haze(6500.0), exposure)
     }
 
     fn plugin(app: &mut App) {
@@ -128,5 +127,5 @@ fn spawn_scene(
         TerrainSettings { finest_cell_m, reach_m: 14_000.0, chunks_per_frame: 64, builds_at_once: 64, ..default() },
     ));
     let sky = (Vec3::Y * landscape.height_m(0.0, 0.0), 40_000.0);
-    spawn_daylight(&mut commands, &mut meshes, &mut materials, sky, (55.0, 420.0));
+    options.light.daylight().spawn(&mut commands, &mut meshes, &mut materials, sky, (55.0, 420.0));
 }

@@ -6,6 +6,7 @@
 pub mod arguments;
 pub mod capture;
 pub mod daylight;
+pub mod effects;
 pub mod landscape;
 pub mod options;
 pub mod pictures;

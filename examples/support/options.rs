@@ -14,6 +14,9 @@ pub struct SceneOptions {
     /// Time of the year: 0 midwinter, 0.34 spring, 0.55 summer, 0.81 autumn.
     #[arg(long, default_value_t = Season::SUMMER.year, value_parser = year)]
     pub year: f32,
+    /// Leaves out ambient occlusion, bloom and temporal anti-aliasing, for slow devices.
+    #[arg(long)]
+    pub plain: bool,
     #[command(flatten)]
     pub image: ImageOptions,
     #[command(flatten)]

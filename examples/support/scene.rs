@@ -1,6 +1,6 @@
 //! A scene: what an example says about itself to get a window and pictures.
 
-use super::{options::SceneOptions, pictures, start, window};
+use super::{effects, options::SceneOptions, pictures, start, window};
 use bevy::{asset::LoadState, prelude::*};
 use bevy_windwood::prelude::*;
 use std::process::ExitCode;
@@ -42,12 +42,15 @@ pub trait Scene: Resource + Sized {
 
 /// Runs a scene.
 pub fn run<S: Scene>(scene: S) -> ExitCode {
-    let SceneOptions { wind, year, image, .. } = scene.options().clone();
+    let SceneOptions { wind, year, image, plain, .. } = scene.options().clone();
     let mut app = start::app(S::TITLE, &image);
     app.insert_resource(Wind { speed: wind.wind, seed: wind.seed, ..scene.wind() })
         .insert_resource(Season { year })
         .insert_resource(scene)
         .add_plugins(S::plugin);
+    if !plain {
+        effects::give_to_cameras(&mut app, !image.headless);
+    }
     if image.headless {
         return start::exit_code(pictures::render::<S>(&mut app));
     }

@@ -11,7 +11,7 @@
 //!    follow slow gusts, and ring in fast ones, which all places share. `table_place` reads it.
 //! 4. `beam`: how a beam answers a wind: by how much at its height (`mean_wind`) and in its stand (`stand_wind`), and as which
 //!    oscillators.
-//! 5. `pose`: a tree's bent beams, each attached to its parent, from the table.
+//! 5. `pose`: a tree's bent beams, each attached to its parent, from the table. `bend` is the shape of one of them.
 //! 6. `leaf`: leaves that turn into the wind and flutter (26).
 //! 7. `exact_step`: one oscillator, step by step, for motion that is not periodic. `live`: trees that a game touches move by it, beside
 //!    the table.
@@ -25,6 +25,7 @@
 
 pub(crate) mod admittance;
 pub(crate) mod beam;
+pub(crate) mod bend;
 pub(crate) mod direction_map;
 mod exact_step;
 pub(crate) mod frequency_classes;
@@ -45,6 +46,7 @@ mod test_beams;
 
 pub use admittance::{admittance, equivalent_size_m};
 pub use beam::{BeamAnswer, BeamDynamics, BeamSway, BeamWind, DRAG_SPEED_M_S, NO_PARENT};
+pub use bend::{MODE_SHAPE, SLOPE_TIP};
 pub use direction_map::{DirectionMap, LoadCoefficients};
 pub use exact_step::{ExactStep, OscillatorState};
 pub use frequency_classes::FrequencyClasses;
@@ -53,7 +55,7 @@ pub use live::{BeamLoad, Capsule, Contacts, LiveBeam, LiveSteps, LiveTree, strik
 pub use load_basis::{LoadBasis, LoadBasisKind};
 pub use mean_wind::MeanWind;
 pub use oscillator_grid::{OscillatorGrid, RowWeights};
-pub use pose::{BeamPose, MODE_SHAPE, SLOPE_TIP, TIP_ANGLE_LIMIT, TreeInWind, TreePoser};
+pub use pose::{BeamPose, TIP_ANGLE_LIMIT, TreeInWind, TreePoser};
 pub use response::ResponseTable;
 pub use stand_wind::{Speeds, StandWind};
 pub use table_place::TablePlace;

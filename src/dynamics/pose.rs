@@ -8,46 +8,30 @@
 //! Theta = Theta_free / sqrt(1 + |Theta_free|^2 / limit^2)
 //! ```
 //!
-//! The limit is that of a whole branch, of which each of its beams has its share: so no stem is bent past the wind.
-//!
-//! The axis at `s` is turned by `h(s) Theta`, with `h = phi_1' / phi_1'(1)` the slope of the mode (18). Its place
-//! follows by integrating the turned direction along the beam, which keeps every length. With
-//! `H_k(s) = int_0^s h^k` and `T = |Theta|^2`, the Taylor series of cosine and sine give
+//! The limit is that of a whole branch, of which each of its beams has its share: so no stem is bent past the wind. What its ancestors
+//! carry along may already point that way, and a beam that points into the wind feels nothing of it. So the angle is also held to
+//! that between the beam, as it is carried, and the wind of the moment, by the chord `c` of that angle:
 //!
 //! ```text
-//! bent(s) = b + L (d X + Theta Y)
-//! X = s - T H_2/2 + T^2 H_4/24 - T^3 H_6/720         = int cos(h |Theta|)
-//! Y = H_1 - T H_3/6 + T^2 H_5/120                    = int sin(h |Theta|) / |Theta|
+//! Theta' = Theta / (1 + (|Theta| / c)^8)^(1/8)
 //! ```
+//!
+//! It leaves a bend of half of that angle as it is, to 5e-4.
+//!
+//! `bend.rs` has the place and the turn of each point of its axis.
 //!
 //! A point bound at `s` turns about the axis with it: `p -> R(s) (p - (b + L s d)) + bent(s)`, with `R(s)` the rotation
 //! about `d x Theta` by `h(s) |Theta|`. A child moves with its parent in the same way, from the point where it is
 //! attached. So the pose of a vertex is the product of its ancestors' motions, all in rest coordinates.
-//!
-//! Posing needs no trigonometry: quaternions come from polynomials in the half angle.
 
 use super::beam::{BeamDynamics, BeamWind, NO_PARENT};
+use super::bend::{AxisPoint, SLOPE_TIP};
 use super::direction_map::DirectionMap;
 use super::oscillator_grid::RowWeights;
 use bevy::math::{Mat3, Quat, Vec3, Vec3A, Vec4};
 
-/// `phi_1'(1)`, the slope at the tip of the first mode with a tip of 1: the tip's angle for a deflection of one length.
-pub const SLOPE_TIP: f32 = 1.376_505_4;
-
 /// The angle in radians that the tip of a branch approaches in an ever stronger wind (63 degrees).
 pub const TIP_ANGLE_LIMIT: f32 = 1.1;
-
-/// `h(s) = s B_0(s)` and `H_k(s) = s^(k+1) B_k(s)`, k = 1..6, with `B = B[0] + B[1] s + B[2] s^2 + B[3] s^3`: minimax
-/// fits to eq. 18, to 2.1e-4 for h, and to less than 5e-5 of the length for all that `H_k` is multiplied by.
-pub const MODE_SHAPE: [[f32; 4]; 7] = [
-    [2.546_882, -1.678_134_6, -0.275_886_7, 0.406_925_2],
-    [1.274_264_9, -0.563_412, -0.062_747_29, 0.078_356_65],
-    [2.195_082_1, -2.357_947, 0.806_842_25, -0.030_695_12],
-    [4.209_066, -7.150_318, 4.499_929_4, -1.011_924_7],
-    [8.117_791, -17.585_144, 13.848_035, -3.879_497_8],
-    [15.020_49, -37.190_565, 32.597_094, -9.959_87],
-    [26.275_35, -70.269_42, 65.276_05, -20.841_745],
-];
 
 /// The least limit of a tip's angle, in radians: a beam without one is as good as rigid.
 const LEAST_ANGLE_LIMIT_RAD: f32 = 1e-6;
@@ -55,6 +39,13 @@ const LEAST_ANGLE_LIMIT_RAD: f32 = 1e-6;
 /// Free angles beyond this, in radians and by component, are cut off before their squares overflow. Nothing smaller is cut, for that would
 /// turn the bend out of the plane across the beam.
 const FREE_ANGLE_BOUND: f32 = 1e18;
+
+/// Below this speed, m/s, no wind holds beams back.
+const LEAST_WIND_M_S: f32 = 1e-3;
+/// Square of the share of the way to the wind up to which a bend is not held back: it would be by 1e-5.
+const FREE_BEND: f32 = 0.1;
+/// Greatest square of that share, so that its fourth power is finite.
+const MOST_BEND: f32 = 1e8;
 
 /// How a beam is bent, and what its ancestors do to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,80 +80,24 @@ impl BeamPose {
     }
 }
 
-/// A point of a beam's axis with all that does not change from frame to frame.
-#[derive(Clone, Copy, Debug)]
-struct AxisPoint {
-    /// `b + L s d`.
-    rest: Vec3A,
-    direction: Vec3A,
-    /// `h / 2`.
-    half_turn: f32,
-    /// Coefficients of T, T^2, T^3 in `L (X - s)`.
-    along: [f32; 3],
-    /// Coefficients of 1, T, T^2 in `L Y`.
-    across: [f32; 3],
-}
-
-/// What bending does at a point of the axis.
-struct Bend {
-    rotation: Quat,
-    displacement: Vec3A,
-}
-
-impl AxisPoint {
-    fn new(beam: &BeamDynamics, s: f32) -> Self {
-        let s = s.clamp(0.0, 1.0);
-        let [h, h1, h2, h3, h4, h5, h6] = mode_shape(s);
-        let length = beam.length_m;
-        Self {
-            rest: Vec3A::from(beam.base + length * s * beam.direction),
-            direction: Vec3A::from(beam.direction),
-            half_turn: 0.5 * h,
-            along: [-length * h2 / 2.0, length * h4 / 24.0, -length * h6 / 720.0],
-            across: [length * h1, -length * h3 / 6.0, length * h5 / 120.0],
-        }
-    }
-
-    #[inline]
-    fn bend(&self, tip_angle: Vec3A) -> Bend {
-        let t = tip_angle.length_squared();
-        let along = t * (self.along[0] + t * (self.along[1] + t * self.along[2]));
-        let across = self.across[0] + t * (self.across[1] + t * self.across[2]);
-        Bend {
-            rotation: quat_from_half_vector(self.direction.cross(tip_angle) * self.half_turn),
-            displacement: self.direction * along + tip_angle * across,
-        }
-    }
-}
-
-/// `h(s)` and `H_1(s)` to `H_6(s)`, see [`MODE_SHAPE`].
-pub(crate) fn mode_shape(s: f32) -> [f32; 7] {
-    let mut power = 1.0;
-    MODE_SHAPE.map(|[a, b, c, d]| {
-        power *= s;
-        power * (a + s * (b + s * (c + s * d)))
-    })
-}
-
-/// The quaternion of a rotation by twice the vector `half`, for up to some 1.2 rad in all.
-///
-/// The series are of the 4th and 6th degree; what they leave of the quaternion's length, below 1e-5, one step of
-/// Newton's method for the inverse root removes.
-#[inline]
-fn quat_from_half_vector(half: Vec3A) -> Quat {
-    let x2 = half.length_squared();
-    let sine = 1.0 + x2 * (-1.0 / 6.0 + x2 * (1.0 / 120.0));
-    let cosine = 1.0 + x2 * (-1.0 / 2.0 + x2 * (1.0 / 24.0 + x2 * (-1.0 / 720.0)));
-    let inverse_norm = 1.5 - 0.5 * (cosine * cosine + sine * sine * x2);
-    let axis = half * (sine * inverse_norm);
-    Quat::from_xyzw(axis.x, axis.y, axis.z, cosine * inverse_norm)
-}
-
 /// `Theta` from `Theta_free`: the same direction, but never beyond the limit.
 #[inline]
 fn saturate(free: Vec3A, limit_rad: f32) -> Vec3A {
     let bounded = free.clamp(Vec3A::splat(-FREE_ANGLE_BOUND), Vec3A::splat(FREE_ANGLE_BOUND));
     bounded * (limit_rad / (limit_rad * limit_rad + bounded.length_squared()).sqrt())
+}
+
+/// The bend of a beam that points to `carried` before it, held to that which points it into the wind.
+#[inline]
+fn held_to_wind(tip_angle: Vec3A, carried: Vec3A, downwind: Vec3A) -> Vec3A {
+    let way = carried.distance_squared(downwind);
+    let share = tip_angle.length_squared();
+    if share < FREE_BEND * way {
+        return tip_angle;
+    }
+    let share = (share / way).min(MOST_BEND);
+    let fourth = share * share * (share * share);
+    tip_angle / (1.0 + fourth).sqrt().sqrt().sqrt()
 }
 
 /// One tree's beams, prepared for one wind: what does not change from frame to frame.
@@ -179,6 +114,7 @@ struct PreparedBeam {
     /// Free tip angle in the mean wind, and for a unit of each signal's response, in rad.
     mean: Vec3A,
     moving: [Vec3A; 4],
+    direction: Vec3A,
     /// Where on the parent this beam is attached.
     attach: AxisPoint,
     /// Of the rows in `TreePoser::rows`.
@@ -225,6 +161,7 @@ impl TreePoser {
             PreparedBeam {
                 mean: free_angle(coefficients.mean, answer.mean_gain),
                 moving: coefficients.moving.map(|moving| free_angle(moving, answer.gust_gain)),
+                direction: Vec3A::from(beam.direction),
                 attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
                 read: answer.read,
                 parent: if parent.is_some() { beam.parent } else { NO_PARENT },
@@ -262,6 +199,7 @@ impl TreePoser {
             PreparedBeam {
                 mean: Vec3A::from(free_angle(beam)),
                 moving: [Vec3A::ZERO; 4],
+                direction: Vec3A::from(beam.direction),
                 attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
                 read: RowWeights::default(),
                 parent: if parent.is_some() { beam.parent } else { NO_PARENT },
@@ -289,22 +227,31 @@ impl TreePoser {
         }
     }
 
-    /// Poses all beams for given free tip angles, one a beam.
-    pub(crate) fn pose_free(&self, free: &[Vec3A], out: &mut [BeamPose]) {
+    /// Poses all beams for given free tip angles, one a beam, and as [`pose`](Self::pose) for the wind at the tree.
+    pub(crate) fn pose_free(&self, free: &[Vec3A], wind: Vec3, out: &mut [BeamPose]) {
+        let downwind = direction_of(wind);
         for (index, (beam, free)) in self.beams.iter().zip(free).enumerate().take(out.len()) {
-            out[index] = beam.pose(saturate(*free, beam.angle_limit_rad), out);
+            out[index] = beam.pose(saturate(*free, beam.angle_limit_rad), downwind, out);
         }
     }
 
     /// Poses all beams, for the responses of its [`rows`](Self::rows) at the tree's place and time
     /// ([`ResponseTable::responses`](super::response::ResponseTable::responses)). A row without a response is at rest in the mean
-    /// wind. Beams beyond the length of `out` are left out.
-    pub fn pose(&self, responses: &[Vec4], out: &mut [BeamPose]) {
+    /// wind. No beam bends past the wind at the tree at that time: `wind` is its velocity in the tree's coordinates, m/s; where it is 0, beams
+    /// bend as far as their own limits let them. Beams beyond the length of `out` are left out.
+    pub fn pose(&self, responses: &[Vec4], wind: Vec3, out: &mut [BeamPose]) {
+        let downwind = direction_of(wind);
         for (index, beam) in self.beams.iter().enumerate().take(out.len()) {
             let free = beam.free_angle(response_of(beam, responses));
-            out[index] = beam.pose(saturate(free, beam.angle_limit_rad), out);
+            out[index] = beam.pose(saturate(free, beam.angle_limit_rad), downwind, out);
         }
     }
+}
+
+/// Where a wind blows to; none in a calm.
+fn direction_of(wind: Vec3) -> Option<Vec3A> {
+    let speed_m_s = wind.length();
+    (speed_m_s > LEAST_WIND_M_S && speed_m_s.is_finite()).then(|| Vec3A::from(wind / speed_m_s))
 }
 
 #[inline]
@@ -323,10 +270,14 @@ impl PreparedBeam {
 
     /// The pose of this beam, given those of all before it.
     #[inline]
-    fn pose(&self, tip_angle: Vec3A, before: &[BeamPose]) -> BeamPose {
+    fn pose(&self, tip_angle: Vec3A, downwind: Option<Vec3A>, before: &[BeamPose]) -> BeamPose {
         let (rotation, translation) = match before.get(self.parent as usize) {
             Some(parent) => self.motion_of_parent(parent),
             None => (Quat::IDENTITY, Vec3A::ZERO),
+        };
+        let tip_angle = match downwind {
+            Some(downwind) => held_to_wind(tip_angle, rotation * self.direction, downwind),
+            None => tip_angle,
         };
         BeamPose { tip_angle, rotation, translation }
     }

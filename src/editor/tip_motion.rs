@@ -43,8 +43,9 @@ impl TipMotion {
         let mut poses = vec![BeamPose::REST; beams.len()];
         let mut responses: Vec<Vec4> = Vec::new();
         let mut off_rest = |time_s: f64| {
-            response.table.responses(&response.place(place, time_s), poser.rows(), &mut responses);
-            poser.pose(&responses, &mut poses);
+            let place = response.place(place, time_s);
+            response.table.responses(&place, poser.rows(), &mut responses);
+            poser.pose(&responses, response.wind_at(&wind.stand, &place, model.height_m()), &mut poses);
             let top = poses.last().zip(beams.last()).map_or(rest, |(pose, beam)| pose.carry(beam, 1.0, rest).0);
             frame.to_wind(top - rest)
         };

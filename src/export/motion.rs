@@ -23,6 +23,8 @@ const MOMENTS: usize = 32;
 pub(super) struct SwayLoop<'a> {
     model: &'a TreeModel,
     poser: TreePoser,
+    /// Where the mean wind blows to, in the tree's coordinates.
+    downwind: Vec3,
     /// Free tip angles, one a beam, for each key but the last, which is the first again.
     angles: Vec<Vec<Vec3A>>,
     /// Times of the keys, the last the length of the loop, s.
@@ -54,6 +56,7 @@ impl<'a> SwayLoop<'a> {
             leaf_share: model.leaf_season.share(year),
         };
         let poser = TreePoser::new(&model.beams, &tree);
+        let downwind = tree.to_wind.transpose() * Vec3::X;
         let mut responses = Vec::new();
         let angles_at = |key: usize| {
             let time_s = settings.start_s + (key as f64 - before as f64) * step_s;
@@ -65,13 +68,13 @@ impl<'a> SwayLoop<'a> {
         let stretch: Vec<Vec<Vec3A>> = (0..keys + before).map(angles_at).collect();
         let times_s = (0..=keys).map(|key| (loop_s * key as f64 / keys as f64) as f32).collect();
         let angles = if is_whole { stretch } else { looped(&stretch, before) };
-        Self { model, poser, angles, times_s }
+        Self { model, poser, downwind, angles, times_s }
     }
 
     /// The poses of all beams at a key.
     pub fn pose(&self, key: usize, poses: &mut Vec<BeamPose>) {
         poses.resize(self.model.beams.len(), BeamPose::REST);
-        self.poser.pose_free(&self.angles[key % self.angles.len()], poses);
+        self.poser.pose_free(&self.angles[key % self.angles.len()], self.downwind, poses);
     }
 
     /// A skin of at most so many joints for this sway.

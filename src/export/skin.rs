@@ -7,7 +7,7 @@
 
 use super::surface::BeamPlace;
 use crate::{
-    dynamics::{BeamDynamics, pose::mode_shape},
+    dynamics::{BeamDynamics, bend::mode_shape},
     tree::TreeModel,
 };
 use bevy::math::Vec3;

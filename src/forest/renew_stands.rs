@@ -1,4 +1,4 @@
-//! The wind among the trees of a forest follows its changes.
+//! The wind among the trees of a forest follows its changes, and the leaves that come and fall.
 
 use super::{
     cells::ForestCells,
@@ -6,7 +6,7 @@ use super::{
     stand::{Stand, StandSpecies},
     stand_changes::CellBalances,
 };
-use crate::{ground::Ground, scatter::Planter};
+use crate::{ground::Ground, scatter::Planter, tree::Season};
 use bevy::{
     prelude::*,
     tasks::{AsyncComputeTaskPool, block_on, poll_once},
@@ -16,8 +16,8 @@ use std::sync::Arc;
 /// From one renewal to the next there are at least so many frames: where much is felled, not each tree has the wind worked out again.
 const FRAMES_BETWEEN: u32 = 30;
 
-/// Works the stand of forests out again, in the background, when much or little of them was felled or planted near the viewers.
-pub(super) fn renew_stands(mut frames: Local<u32>, mut forests: Query<&mut ForestCells>) {
+/// Works the stand of forests out again, in the background, when much or little of them was felled or planted near the viewers, or has other leaves.
+pub(super) fn renew_stands(mut frames: Local<u32>, season: Res<Season>, mut forests: Query<&mut ForestCells>) {
     *frames = frames.wrapping_add(1);
     for mut forest in &mut forests {
         let forest = forest.bypass_change_detection();
@@ -26,12 +26,17 @@ pub(super) fn renew_stands(mut frames: Local<u32>, mut forests: Query<&mut Fores
             forest.stand_task = None;
             forest.set_stand(stand);
         }
-        if !forest.stand_is_due || !frames.is_multiple_of(FRAMES_BETWEEN) {
+        if !frames.is_multiple_of(FRAMES_BETWEEN) {
             continue;
         }
-        let (Some(stand), Some(index)) = (forest.stand(), &forest.changes) else { continue };
-        let (planter, ground, species) = (stand.planter.clone(), stand.ground.clone(), stand.species.clone());
-        let tiles = index.tiles();
+        let Some(stand) = forest.stand() else { continue };
+        let now = |species: &Option<StandSpecies>| species.map(|species| species.in_season(season.wrapped()));
+        if !forest.stand_is_due && stand.species.iter().all(|species| now(species) == *species) {
+            continue;
+        }
+        let (planter, ground) = (stand.planter.clone(), stand.ground.clone());
+        let species: Vec<_> = stand.species.iter().map(now).collect();
+        let tiles = forest.changes.as_ref().map_or_else(Vec::new, |index| index.tiles());
         forest.stand_is_due = false;
         forest.stand_task = Some(AsyncComputeTaskPool::get().spawn(async move {
             let balances = balances(&tiles, &planter, &ground, &species);

@@ -1,16 +1,16 @@
 //! The stand that a plan grows, as the wind feels it: how high and dense it is about a place, and how far the place is open to each side.
 //!
 //! It follows from the plan's expected densities and not from the single plants. So it needs no other cells, and a tree's own crown
-//! counts as much as its neighbours'. What a game has felled and planted counts cell by cell.
+//! counts as much as its neighbours'. What a game has felled and planted counts cell by cell, and bare trees stop the wind by their wood alone.
 
 use super::stand_changes::CellBalances;
 use crate::{
     ground::Ground,
     scatter::Planter,
-    tree::growth::age::Age,
+    tree::{LeafSeason, growth::age::Age},
     wind::{Canopy, EXPOSURE_DIRECTIONS, UpwindPath, exposure_direction},
 };
-use bevy::math::DVec2;
+use bevy::math::{DVec2, FloatExt};
 use std::sync::Arc;
 
 /// Steps in which one looks upwind, m, the nearest first: what is far away is felt less. Of what is farther than their sum, [`REACH_M`],
@@ -18,6 +18,8 @@ use std::sync::Arc;
 const STEPS_M: [f32; 9] = [8.0, 8.0, 16.0, 16.0, 32.0, 32.0, 64.0, 64.0, 80.0];
 /// Trees farther than this, m, make no difference.
 pub(super) const REACH_M: f32 = 320.0;
+/// In so many steps a stand becomes green or bare: at each one its wind is worked out again.
+const LEAF_STEPS: f32 = 8.0;
 /// Square metres of a hectare.
 const HECTARE_M2: f32 = 1e4;
 
@@ -25,9 +27,14 @@ const HECTARE_M2: f32 = 1e4;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct StandSpecies {
     pub age: Age,
-    /// Height and frontal area of a mature tree, m and m^2.
+    /// Height and frontal area of a mature tree in leaf, m and m^2.
     pub height_m: f32,
     pub frontal_area_m2: f32,
+    /// Share of its drag that is left without leaves.
+    pub bare_share: f32,
+    pub leaves: LeafSeason,
+    /// How much of its leaves it has now.
+    pub leaf_share: f32,
 }
 
 /// The stand of a forest, anywhere.
@@ -41,10 +48,16 @@ pub(super) struct Stand {
 }
 
 impl StandSpecies {
-    /// Frontal area and height of a tree at an age, m^2 and m.
+    /// The same at a time of the year, to an eighth of its leaves.
+    pub fn in_season(self, year: f32) -> Self {
+        Self { leaf_share: (self.leaves.share(year) * LEAF_STEPS).round() / LEAF_STEPS, ..self }
+    }
+
+    /// Frontal area and height of a tree at an age, m^2 and m. The area is that of a crown in leaf with the same drag.
     pub fn tree_at(&self, age_years: f32) -> (f32, f32) {
         let size = self.age.stage(age_years).height;
-        (self.frontal_area_m2 * size * size, self.height_m * size)
+        let area_m2 = self.frontal_area_m2 * self.bare_share.lerp(1.0, self.leaf_share);
+        (area_m2 * size * size, self.height_m * size)
     }
 }
 
@@ -134,6 +147,7 @@ mod tests {
             ForestPlan,
             plan::{Area, Shape, Stock},
         },
+        tree::phenology::Phenology,
     };
 
     /// A wood of 400 m by 400 m: 100 trees a hectare of 20 m height and 100 m^2.
@@ -143,9 +157,20 @@ mod tests {
         let stock = vec![Stock { age_years, age_spread_years: 0.0, ..Stock::default() }];
         let area = Area { shape, density_per_ha: 100.0, stock, ..Area::default() };
         let planter = Planter::new(&ForestPlan { areas: vec![area], ..ForestPlan::default() }).expect("a valid plan");
-        let species = StandSpecies { age: Age::default(), height_m: 20.0, frontal_area_m2: 100.0 };
         let (planter, ground) = (Arc::new(planter), Arc::new(LevelGround::default()));
-        Stand { planter, ground, species: vec![Some(species)], balances: CellBalances::default() }
+        Stand { planter, ground, species: vec![Some(species())], balances: CellBalances::default() }
+    }
+
+    fn species() -> StandSpecies {
+        let leaves = LeafSeason::of(&Phenology::default());
+        StandSpecies {
+            age: Age::default(),
+            height_m: 20.0,
+            frontal_area_m2: 100.0,
+            bare_share: 0.2,
+            leaves,
+            leaf_share: 1.0,
+        }
     }
 
     fn canopy(x: f64, z: f64) -> Canopy {
@@ -171,6 +196,29 @@ mod tests {
             assert!((behind - (-x as f32 / 40.0).exp()).abs() < 0.2 && behind < before, "{x} m: {behind}");
             before = behind;
         }
+    }
+
+    /// By their closed forms: an index of 0.2, and e^-1 of the wind after 200 m in the place of 40.
+    #[test]
+    fn a_bare_wood_lets_the_wind_in() {
+        let winter = Stand { species: vec![Some(species().in_season(0.0))], ..wood() };
+        let at = |x: f64| winter.canopies(DVec2::new(x, 200.0), 1.0, 1)[0];
+        assert!((at(200.0).frontal_area_index - 0.2).abs() < 1e-3 && (at(200.0).height_m - 20.0).abs() < 0.01);
+        for x in [20.0, 80.0, 200.0] {
+            let open = at(x).exposure[0];
+            assert!((open - (-x as f32 / 200.0).exp()).abs() < 0.1, "{x} m: {open}");
+        }
+    }
+
+    #[test]
+    fn a_year_has_few_stands() {
+        let years = (0..=1000).map(|step| species().in_season(step as f32 / 1000.0));
+        let mut stands: Vec<StandSpecies> = years.collect();
+        assert_eq!((stands[0].leaf_share, stands[550].leaf_share, stands[1000].leaf_share), (0.0, 1.0, 0.0));
+        stands.dedup();
+        assert!((10..=17).contains(&stands.len()), "{}", stands.len());
+        let evergreen = StandSpecies { leaves: LeafSeason::EVERGREEN, ..species() };
+        assert_eq!(evergreen.in_season(0.0), evergreen);
     }
 
     #[test]

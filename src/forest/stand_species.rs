@@ -4,7 +4,7 @@ use super::{
     cells::ForestCells,
     stand::{Stand, StandSpecies},
 };
-use crate::tree::{Species, frontal_area_m2, individual::grow};
+use crate::tree::{LeafSeason, Season, Species, frontal_area_m2, individual::grow, skeleton::Skeleton, tree_pieces};
 use bevy::{
     asset::LoadState,
     platform::collections::HashMap,
@@ -24,7 +24,22 @@ pub(super) struct StandSpeciesLibrary {
 
 fn measure(species: &Species) -> StandSpecies {
     let tree = grow(species, species.age.mature_years, SEED);
-    StandSpecies { age: species.age, height_m: tree.height_m(), frontal_area_m2: frontal_area_m2(&tree) }
+    StandSpecies {
+        age: species.age,
+        height_m: tree.height_m(),
+        frontal_area_m2: frontal_area_m2(&tree),
+        bare_share: bare_share(species, &tree),
+        leaves: LeafSeason::of(&species.phenology),
+        leaf_share: 1.0,
+    }
+}
+
+/// The share of a tree's drag that is its wood's.
+fn bare_share(species: &Species, tree: &Skeleton) -> f32 {
+    let [wood, all] = tree_pieces(species, tree).fold([0.0; 2], |[wood, all], piece| {
+        [wood + if piece.is_leaf { 0.0 } else { piece.drag_kg_m }, all + piece.drag_kg_m]
+    });
+    if all > 0.0 { (wood / all) as f32 } else { 1.0 }
 }
 
 impl StandSpeciesLibrary {
@@ -46,6 +61,7 @@ pub(super) fn prepare_stands(
     mut events: MessageReader<AssetEvent<Species>>,
     species: Res<Assets<Species>>,
     assets: Res<AssetServer>,
+    season: Res<Season>,
     mut forests: Query<&mut ForestCells>,
 ) {
     let valid = |id: AssetId<Species>| species.get(id).filter(|species| species.validate().is_ok());
@@ -80,7 +96,8 @@ pub(super) fn prepare_stands(
             known.contains_key(&handle.id()) || matches!(assets.get_load_state(handle), Some(LoadState::Failed(_)))
         };
         if forest.species().iter().all(is_settled) {
-            let species = forest.species().iter().map(|handle| known.get(&handle.id()).copied()).collect();
+            let now = |handle: &Handle<Species>| known.get(&handle.id()).map(|known| known.in_season(season.wrapped()));
+            let species = forest.species().iter().map(now).collect();
             let (planter, ground) = forest.planting();
             forest.set_stand(Stand { planter, ground, species, balances: default() });
             forest.note_changed_stand();

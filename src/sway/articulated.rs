@@ -151,7 +151,7 @@ impl TreePose {
             self.wind.high += live.wind().high;
             self.wind.low += live.wind().low;
         }
-        self.posers[0].pose_free(&self.free_angles, &mut self.beams);
+        self.posers[0].pose_free(&self.free_angles, self.wind.high, &mut self.beams);
     }
 }
 

@@ -101,6 +101,12 @@ impl WindResponse {
         StandWind::new(self.mean_wind, canopy.pack(), self.field.frame().along.xz())
     }
 
+    /// The wind at a height above ground of a place, m/s in world coordinates, without fast gusts: at the top of a tree for
+    /// [`TreePoser::pose`](crate::dynamics::TreePoser::pose), there turned into the tree's own coordinates.
+    pub fn wind_at(&self, stand: &StandWind, place: &TablePlace, height_m: f32) -> Vec3 {
+        self.field.frame().to_world(stand.velocity(height_m, self.table.velocity(place)))
+    }
+
     /// Where a tree at `position` stands in the periodic tables at a time: it reads the same wind there as
     /// [`WindField::sample`] gives at the height of the tables.
     ///

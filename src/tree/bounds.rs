@@ -3,14 +3,15 @@
 //! The wind's strength bounds how far each beam's tip turns, `Theta`, and with that how far anything is moved. Where a beam
 //! is attached, its parent has moved by at most `D` and turned by at most `R`; a point of the beam's axis at `s`, at a
 //! distance `r` from there, moves by at most `D + R r + L Theta H_1(s)` and turns by at most `R + Theta h(s)`, in whatever
-//! direction the loads are (`h` and `H_1` of `dynamics/pose.rs`: the axis turns by `Theta h`, and so leaves its place by no
+//! direction the loads are (`h` and `H_1` of `dynamics/bend.rs`: the axis turns by `Theta h`, and so leaves its place by no
 //! more than the integral). In a great storm that sum is far more than the saturating beams can reach, and the box is that
 //! of the limit, which is found by bending the tree.
 
 use super::vertices::{LeafVertices, WoodVertices};
 use crate::dynamics::{
     beam::BeamDynamics,
-    pose::{BeamPose, SLOPE_TIP, TreePoser, mode_shape},
+    bend::{SLOPE_TIP, mode_shape},
+    pose::{BeamPose, TreePoser},
 };
 use bevy::math::Vec3;
 
@@ -142,7 +143,7 @@ pub(super) fn limit_bounds(beams: &[BeamDynamics], reaches_m: &[f32]) -> SwayBou
         let lean = if step == BOUND_DIRECTIONS { Vec3::ZERO } else { Vec3::new(azimuth.cos(), 0.0, azimuth.sin()) };
         let to_the_limit =
             |beam: &BeamDynamics| lean.reject_from_normalized(beam.direction).normalize_or_zero() * HURRICANE_RAD;
-        TreePoser::bent(beams, to_the_limit).pose(&[], &mut poses);
+        TreePoser::bent(beams, to_the_limit).pose(&[], Vec3::ZERO, &mut poses);
         for ((beam, pose), reach_m) in beams.iter().zip(&poses).zip(reaches_m) {
             for s in BOUND_PLACES {
                 let (carried, _) = pose.carry(beam, s, beam.base + beam.direction * (beam.length_m * s));
@@ -190,7 +191,7 @@ mod tests {
         let next = std::cell::Cell::new(0);
         let angle = |_: &BeamDynamics| angles[next.replace(next.get() + 1)];
         let mut poses = vec![BeamPose::REST; model.beams.len()];
-        TreePoser::bent(&model.beams, angle).pose(&[], &mut poses);
+        TreePoser::bent(&model.beams, angle).pose(&[], Vec3::ZERO, &mut poses);
         model.wood.sway.iter().zip(&model.wood.positions).all(|(sway, at)| {
             let beam = sway[0] as usize;
             let (carried, _) = poses[beam].carry(&model.beams[beam], sway[1], Vec3::from_array(*at));

@@ -4,12 +4,12 @@
 //! columns cannot be interpolated in the usual sense: it is made to have the right statistics.
 //!
 //! 1. *Power.* Four columns are blended by weights whose sum is 1 and the sum of whose squares is nearly 1
-//!    (`blend_weights` of `interpolation`). The first keeps the variance of slow gusts, which the columns share, the second that of fast
-//!    ones, which they do not. In between, too, the power at a random place is right to 4% at every frequency.
+//!    (`weights_across` of `interpolation`). The first keeps the variance of slow gusts, which the columns share, the second that of fast
+//!    ones, which they do not. In between, too, the power at a random place is right to 2% at every frequency.
 //! 2. *Coherence.* Each cell between two columns has a lag, which grows and falls across it: `lag_j sin(2 pi s)`. It is
 //!    nothing on the columns, and so the field stays as it was synthesised there. Fast gusts lose their coherence by it, slow
 //!    ones do not. Over many cells the lags are spread so that pairs of places have the coherence `exp(-C f d / U)`
-//!    (Setas et al., equations 11 and 12) to some 0.07, for u. The spread is fitted to that.
+//!    (Setas et al., equations 11 and 12) to some 0.04, for u. The spread is fitted to that.
 //! 3. *Repeat.* After the last column comes the first one again, but later: fronts are slanted. Without the slant the same gust
 //!    would blow at the same moment at every width of the field.
 //!
@@ -23,7 +23,7 @@ use std::f32::consts::TAU;
 const SLANT: f32 = 0.381_966;
 
 /// The lags of cells over `C L / U`, the time in which columns L apart lose their coherence. Fitted.
-const LAG_SHARE: f32 = 0.101;
+const LAG_SHARE: f32 = 0.084;
 
 /// How a field is read across the wind.
 #[derive(Clone, Copy, Debug)]

@@ -96,8 +96,10 @@ pub fn cpu_poses(
         let (map, scale, beam_wind) = (wind.basis.map(), tree.scale.y, wind.beam_wind_in(canopy));
         let poser = TreePoser::new(&model.beams, &TreeInWind { map, wind: beam_wind, to_wind, scale, leaf_share: 1.0 });
         let mut responses = Vec::new();
-        wind.table.responses(&wind.place(tree.translation, time_s), poser.rows(), &mut responses);
-        poser.pose(&responses, &mut poses);
+        let place = wind.place(tree.translation, time_s);
+        wind.table.responses(&place, poser.rows(), &mut responses);
+        let blowing = wind.wind_at(&beam_wind.stand, &place, model.height_m() * scale);
+        poser.pose(&responses, tree.rotation.inverse() * blowing, &mut poses);
     }
     poses
 }

@@ -98,8 +98,9 @@ struct Instance<'a> {
     model: &'a TreeModel,
     wind: &'a WindResponse,
     poser: TreePoser,
-    /// Where the mean wind blows to, in the tree's coordinates.
-    downwind: Vec3,
+    /// Turns the tree's coordinates into the wind's.
+    to_wind: Mat3,
+    height_m: f32,
 }
 
 impl<'a> Instance<'a> {
@@ -109,32 +110,36 @@ impl<'a> Instance<'a> {
         let scale = height_m / model.height_m();
         let tree = TreeInWind { map: wind.basis.map(), wind: wind.beam_wind(), to_wind, scale, leaf_share: 1.0 };
         let poser = TreePoser::new(&model.beams, &tree);
-        Self { model, wind, poser, downwind: to_wind.transpose() * Vec3::X }
+        Self { model, wind, poser, to_wind, height_m }
     }
 
-    fn poses(&self, place: Vec3, time_s: f64) -> Vec<BeamPose> {
+    /// The poses at a place and time, and where the wind blows to there and then, in the tree's coordinates.
+    fn poses(&self, place: Vec3, time_s: f64) -> (Vec<BeamPose>, Vec3) {
         let mut responses = Vec::new();
-        self.wind.table.responses(&self.wind.place(place, time_s), self.poser.rows(), &mut responses);
+        let place = self.wind.place(place, time_s);
+        self.wind.table.responses(&place, self.poser.rows(), &mut responses);
+        let blowing = self.wind.wind_at(&self.wind.beam_wind().stand, &place, self.height_m);
+        let blowing = self.to_wind.transpose() * self.wind.field.frame().to_wind(blowing);
         let mut poses = vec![BeamPose::REST; self.model.beams.len()];
-        self.poser.pose(&responses, &mut poses);
-        poses
+        self.poser.pose(&responses, blowing, &mut poses);
+        (poses, blowing)
     }
 
     fn look(&self, worst: &mut Worst) {
         for place in PLACES {
             for time_s in TIMES_S {
-                let poses = self.poses(place, time_s);
-                self.look_at_poses(&poses, worst);
+                let (poses, blowing) = self.poses(place, time_s);
+                self.look_at_poses(&poses, blowing.try_normalize(), worst);
                 // So many whole periods before, the wind was the same.
                 let period_s = self.wind.field.period_s();
-                let before = self.poses(place, time_s - (time_s / period_s).floor() * period_s);
+                let (before, _) = self.poses(place, time_s - (time_s / period_s).floor() * period_s);
                 let drift = poses.iter().zip(&before).map(|(now, then)| now.tip_angle.distance(then.tip_angle));
                 worst.drift = drift.map(f64::from).fold(worst.drift, f64::max);
             }
         }
     }
 
-    fn look_at_poses(&self, poses: &[BeamPose], worst: &mut Worst) {
+    fn look_at_poses(&self, poses: &[BeamPose], downwind: Option<Vec3>, worst: &mut Worst) {
         for ((beam, pose), grown) in self.model.beams.iter().zip(poses).zip(&self.model.skeleton.beams) {
             let (place, turn) = pose.carry(beam, 1.0, beam.base + beam.direction * beam.length_m);
             if !place.is_finite() || !turn.is_finite() {
@@ -145,10 +150,12 @@ impl<'a> Instance<'a> {
             worst.stretch = worst.stretch.max(stretch);
             let tip = turn * beam.direction;
             let carried = pose.rotation * beam.direction;
-            let own = f64::from(carried.angle_between(tip) - carried.angle_between(self.downwind));
+            let Some(downwind) = downwind else { continue };
+            let own = f64::from(carried.angle_between(tip) - carried.angle_between(downwind));
             worst.beam_past_wind_rad = worst.beam_past_wind_rad.max(own);
             if grown.order == 0 {
-                let lean = f64::from(beam.direction.angle_between(tip) - beam.direction.angle_between(self.downwind));
+                let mean_wind = self.to_wind.transpose() * Vec3::X;
+                let lean = f64::from(beam.direction.angle_between(tip) - beam.direction.angle_between(mean_wind));
                 worst.stem_past_wind_rad = worst.stem_past_wind_rad.max(lean);
             }
         }

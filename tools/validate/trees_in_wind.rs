@@ -152,7 +152,7 @@ impl Tree<'_> {
         let (map, wind) = (wind.basis.map(), wind.beam_wind());
         let tree = TreeInWind { map, wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 };
         let mut poses = vec![BeamPose::REST; self.model.beams.len()];
-        TreePoser::new(&self.model.beams, &tree).pose(&[], &mut poses);
+        TreePoser::new(&self.model.beams, &tree).pose(&[], Vec3::X, &mut poses);
         // The last beam of the stem.
         let continuations = self.model.skeleton.continuations();
         let last = std::iter::successors(Some(0), |&beam| continuations[beam].map(|next| next as usize)).last();

@@ -3,7 +3,7 @@
 use crate::{
     dynamics::{
         beam::{BeamDynamics, BeamWind, drag_share},
-        pose::SLOPE_TIP,
+        bend::SLOPE_TIP,
     },
     wind::cross_flow_pressure,
 };

@@ -15,10 +15,7 @@
 //! than its own force would: a walker parts a hazel, and an oak's trunk stops him.
 
 use super::oscillators::LiveTree;
-use crate::dynamics::{
-    beam::BeamDynamics,
-    pose::{BeamPose, mode_shape},
-};
+use crate::dynamics::{beam::BeamDynamics, bend::mode_shape, pose::BeamPose};
 use bevy::math::{Quat, Vec3, Vec3A};
 
 /// A ball that is moved along a line.

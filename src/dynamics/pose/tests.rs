@@ -1,3 +1,4 @@
+use super::super::bend::mode_shape;
 use super::super::{
     beam::BeamSway, direction_map::LoadCoefficients, frequency_classes::FrequencyClasses, mean_wind::MeanWind,
     oracle::cantilever::CantileverMode, oscillator_grid::OscillatorGrid, stand_wind::StandWind,
@@ -67,10 +68,52 @@ fn steady_map(pressure: f32) -> DirectionMap {
 }
 
 fn posed(beams: &[BeamDynamics], pressure: f32) -> Vec<BeamPose> {
+    posed_in(beams, pressure, Vec3::ZERO)
+}
+
+fn posed_in(beams: &[BeamDynamics], pressure: f32, wind: Vec3) -> Vec<BeamPose> {
     let poser = poser(beams, &steady_map(pressure), Mat3::IDENTITY, 1.0);
     let mut poses = vec![BeamPose::REST; beams.len()];
-    poser.pose(&[], &mut poses);
+    poser.pose(&[], wind, &mut poses);
     poses
+}
+
+/// By how much the beams bend further than into a wind along x, at worst, rad.
+fn past_the_wind(beams: &[BeamDynamics], poses: &[BeamPose]) -> f32 {
+    let past = |(beam, pose): (&BeamDynamics, &BeamPose)| {
+        let carried = pose.rotation * beam.direction;
+        let tip = pose.carry(beam, 1.0, axis_point(beam, 1.0)).1 * beam.direction;
+        carried.angle_between(tip) - carried.angle_between(Vec3::X)
+    };
+    beams.iter().zip(poses).map(past).fold(f32::NEG_INFINITY, f32::max)
+}
+
+#[test]
+fn no_beam_bends_past_the_wind() {
+    // Two orders point half downwind already, and the trunk carries them there.
+    let beams = hierarchy();
+    for pressure in [30.0, 300.0, 1e4, 1e20] {
+        let past = past_the_wind(&beams, &posed_in(&beams, pressure, 40.0 * Vec3::X));
+        assert!(past < 1e-3, "{past} rad at {pressure}");
+    }
+    assert!(past_the_wind(&beams, &posed(&beams, 1e4)) > 0.3, "the test has something to find");
+}
+
+#[test]
+fn a_wind_holds_only_beams_that_bend_most_of_the_way_into_it() {
+    let beams = hierarchy();
+    let (held, free) = (posed_in(&beams, 30.0, 7.0 * Vec3::X), posed(&beams, 30.0));
+    for (held, free) in held.iter().zip(&free) {
+        let change = held.tip_angle.distance(free.tip_angle) / free.tip_angle.length();
+        assert!(free.tip_angle.length() > 0.1 && change < 5e-4, "{change} of {}", free.tip_angle.length());
+    }
+    // An angle of 1 rad, held to a chord of 0.5 rad.
+    let carried = Vec3A::new(1.0 - 0.125, (1.0_f32 - 0.875 * 0.875).sqrt(), 0.0);
+    let angle = held_to_wind(Vec3A::Z, carried, Vec3A::X).length();
+    assert!((angle - 257.0_f32.powf(-0.125)).abs() < 1e-4, "{angle}");
+    for odd in [Vec3::NAN, Vec3::INFINITY, Vec3::splat(1e-30)] {
+        assert_eq!(posed_in(&beams, 30.0, odd), free);
+    }
 }
 
 fn axis_point(beam: &BeamDynamics, s: f32) -> Vec3 {
@@ -201,8 +244,8 @@ fn pose_turns_with_the_coordinates() {
     let mut here = [BeamPose::REST];
     let mut there = [BeamPose::REST];
     let responses = vec![Vec4::new(3.0, -2.0, 5.0, 0.0); wind().grid.rows()];
-    poser(&[turned], &map, Mat3::IDENTITY, 1.0).pose(&responses, &mut here);
-    poser(&[BEAM], &map, Mat3::from_quat(turn), 1.0).pose(&responses, &mut there);
+    poser(&[turned], &map, Mat3::IDENTITY, 1.0).pose(&responses, Vec3::ZERO, &mut here);
+    poser(&[BEAM], &map, Mat3::from_quat(turn), 1.0).pose(&responses, Vec3::ZERO, &mut there);
     let difference = here[0].tip_angle - Vec3A::from(turn * Vec3::from(there[0].tip_angle));
     assert!(difference.length() < 1e-6);
 }
@@ -216,7 +259,7 @@ fn larger_instances_use_slower_classes() {
     let is_slower = |row: &u32| *row as usize == grid.row(5, 0, 0);
     let response = |row: &u32| if is_slower(row) { Vec4::new(10.0, 0.0, 0.0, 0.0) } else { Vec4::ZERO };
     let responses: Vec<Vec4> = poser.rows().iter().map(response).collect();
-    poser.pose(&responses, &mut poses);
+    poser.pose(&responses, Vec3::ZERO, &mut poses);
     assert!(poses[0].tip_angle.length() > 0.01);
 }
 
@@ -232,7 +275,7 @@ fn poses_are_finite_for_any_input() {
         assert!(pose.tip_angle.length() <= TIP_ANGLE_LIMIT * 1.001);
     }
     let poser = poser(&beams, &steady_map(1.0), Mat3::IDENTITY, f32::NAN);
-    poser.pose(&[], &mut [BeamPose::REST; 1]);
+    poser.pose(&[], Vec3::ZERO, &mut [BeamPose::REST; 1]);
     assert_eq!((poser.len(), TreePoser::default().is_empty()), (3, true));
 }
 
@@ -242,7 +285,7 @@ fn bare_trees_sway_in_their_own_way() {
     let tip = |leaf_share| {
         let tree = TreeInWind { map: &map, wind: wind(), to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share };
         let mut poses = [BeamPose::REST];
-        TreePoser::new(&[BEAM], &tree).pose(&[], &mut poses);
+        TreePoser::new(&[BEAM], &tree).pose(&[], Vec3::ZERO, &mut poses);
         poses[0].tip_angle.length()
     };
     assert!((tip(0.0) / tip(1.0) - 1.5).abs() < 1e-3);

@@ -20,7 +20,7 @@ fn poses(time_s: f64) -> Vec<BeamPose> {
     let poser = TreePoser::new(&model.beams, &tree);
     let (mut responses, mut poses) = (Vec::new(), vec![BeamPose::REST; model.beams.len()]);
     WIND.table.responses(&WIND.place(Vec3::ZERO, time_s), poser.rows(), &mut responses);
-    poser.pose(&responses, &mut poses);
+    poser.pose(&responses, tree.to_wind.transpose() * Vec3::X, &mut poses);
     poses
 }
 

@@ -9,7 +9,8 @@ use bevy::math::Vec3;
 use crate::{
     dynamics::{
         beam::{BeamDynamics, BeamSway},
-        pose::{BeamPose, SLOPE_TIP, TIP_ANGLE_LIMIT, TreePoser},
+        bend::SLOPE_TIP,
+        pose::{BeamPose, TIP_ANGLE_LIMIT, TreePoser},
     },
     lod::{bake::scene::Scene, reference_wind::MEAN_SPEED_M_S},
     tree::{LeafSeason, TreeModel},
@@ -61,6 +62,6 @@ pub(in crate::lod) fn bent(scene: &Scene, model: &TreeModel, heading: Vec3) -> S
         heading.reject_from_normalized(beam.direction) * (SLOPE_TIP * beam.in_leaf.open_country_gain() * PRESSURE_M2_S2)
     };
     let mut poses = vec![BeamPose::REST; model.beams.len()];
-    TreePoser::bent(&model.beams, tip_angle).pose(&[], &mut poses);
+    TreePoser::bent(&model.beams, tip_angle).pose(&[], Vec3::ZERO, &mut poses);
     scene.posed(model, &poses)
 }

@@ -14,7 +14,8 @@ use super::main_stem::MainStem;
 use crate::{
     dynamics::{
         beam::BeamDynamics,
-        pose::{BeamPose, SLOPE_TIP, TreePoser},
+        bend::SLOPE_TIP,
+        pose::{BeamPose, TreePoser},
     },
     lod::reference_wind::{MEAN_SPEED_M_S, TURBULENCE_INTENSITY},
     sequence::r2,
@@ -29,7 +30,7 @@ pub(in crate::lod) fn poses(model: &TreeModel, frame: u32, frames: u32) -> Vec<B
     let mut poses = vec![BeamPose::REST; model.beams.len()];
     if frames > 1 {
         let angles = free_tip_angles(model, (frame % frames) as f32 / frames as f32);
-        TreePoser::bent(&model.beams, |_| Vec3::ZERO).pose_free(&angles, &mut poses);
+        TreePoser::bent(&model.beams, |_| Vec3::ZERO).pose_free(&angles, Vec3::ZERO, &mut poses);
     }
     poses
 }

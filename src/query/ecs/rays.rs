@@ -222,16 +222,20 @@ impl TreeRays<'_, '_> {
         let leaf_share = model.leaf_season.share(self.season.wrapped() + of.season_shift());
         let canopy = canopy.copied().unwrap_or_default().0;
         let limbs = model.body.limbs.beams().len();
+        let height_m = model.height_m() * uniform_scale(at);
+        let mut blowing = Vec3::ZERO;
         let (mut free, mut poses) = (vec![Vec3A::ZERO; limbs], vec![BeamPose::REST; limbs]);
         let mut responses = Vec::new();
         for WeightedResponse { response, weight } in self.sway.now() {
             let to_wind = response.field.frame().wind_from_world() * world_from_local(at);
             let (map, wind) = (response.basis.map(), response.beam_wind_in(&canopy));
+            let stand = wind.stand;
             let poser = model.body.poser(&TreeInWind { map, wind, to_wind, scale: uniform_scale(at), leaf_share });
             let place = response.place(at.translation(), self.clock.time_s);
             response.table.responses(&place, poser.rows(), &mut responses);
             poser.add_free_angles(&responses, weight, &mut free);
-            poser.pose_free(&free, &mut poses);
+            blowing += weight * (world_from_local(at).transpose() * response.wind_at(&stand, &place, height_m));
+            poser.pose_free(&free, blowing, &mut poses);
         }
         model.body.posed(&poses)
     }

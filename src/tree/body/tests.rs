@@ -3,7 +3,7 @@ use super::{
     *,
 };
 use crate::{
-    dynamics::pose::SLOPE_TIP,
+    dynamics::bend::SLOPE_TIP,
     tree::{Species, TreeModel},
 };
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
@@ -18,7 +18,7 @@ fn bent(beams: &[BeamDynamics], pressure: f32) -> Vec<BeamPose> {
         Vec3::X.reject_from_normalized(beam.direction) * (SLOPE_TIP * beam.in_leaf.gain * pressure)
     };
     let mut poses = vec![BeamPose::REST; beams.len()];
-    TreePoser::bent(beams, free).pose(&[], &mut poses);
+    TreePoser::bent(beams, free).pose(&[], Vec3::ZERO, &mut poses);
     poses
 }
 

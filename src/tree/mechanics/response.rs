@@ -4,7 +4,7 @@ use super::{
     branches::{LoadedBranch, Lump},
     statics::{Beyond, influence, softening, winds},
 };
-use crate::{dynamics::pose::SLOPE_TIP, tree::skeleton::Skeleton};
+use crate::{dynamics::bend::SLOPE_TIP, tree::skeleton::Skeleton};
 use bevy::math::DVec3;
 use std::f64::consts::TAU;
 

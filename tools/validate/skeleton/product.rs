@@ -82,6 +82,6 @@ fn posed(model: &TreeModel, pressure: Vec3) -> Vec<BeamPose> {
     let tree = TreeInWind { map: basis.map(), wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 };
     let poser = TreePoser::new(&beams, &tree);
     let mut poses = vec![BeamPose::REST; model.beams.len()];
-    poser.pose(&[], &mut poses);
+    poser.pose(&[], Vec3::ZERO, &mut poses);
     poses
 }

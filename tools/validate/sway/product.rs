@@ -40,7 +40,8 @@ pub fn tips(crowns: &[Crown], response: &WindResponse) -> Vec<Vec<Vec<Complex<f6
             let place = response.place(stem, f64::from(sample) * f64::from(resolution.time_step_s));
             for ((crown, poser), tips) in crowns.iter().zip(&posers).zip(&mut tips) {
                 response.table.responses(&place, poser.rows(), &mut responses);
-                poser.pose(&responses, &mut poses);
+                // Not held to the wind: what saturates is undone below.
+                poser.pose(&responses, Vec3::ZERO, &mut poses);
                 tips[index].push(free_tip(crown, &poses));
             }
         }

@@ -41,7 +41,7 @@ impl Touched {
 
     fn poses(&self) -> Vec<BeamPose> {
         let mut poses = vec![BeamPose::REST; self.beams.len()];
-        self.poser.pose_free(&self.live.angles().collect::<Vec<_>>(), &mut poses);
+        self.poser.pose_free(&self.live.angles().collect::<Vec<_>>(), Vec3::ZERO, &mut poses);
         poses
     }
 
