@@ -67,7 +67,7 @@ fn hang_a_lantern(
     };
     let found = new.iter().max_by(|a, b| reach_m(a).unwrap_or(f32::MIN).total_cmp(&reach_m(b).unwrap_or(f32::MIN)));
     let Some((beam, ..)) = found else { return };
-    let glass = StandardMaterial { emissive: LinearRgba::rgb(900.0, 420.0, 120.0), ..default() };
+    let glass = StandardMaterial { emissive: LinearRgba::rgb(6.0, 2.6, 0.7), ..default() };
     let iron = StandardMaterial { base_color: Color::srgb(0.05, 0.05, 0.06), perceptual_roughness: 0.6, ..default() };
     let iron = MeshMaterial3d(materials.add(iron));
     let lantern =

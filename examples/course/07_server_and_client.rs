@@ -106,8 +106,8 @@ fn settle(machine: &mut App) {
         std::thread::sleep(Duration::from_millis(1));
         let world = machine.world_mut();
         let stands = world.query::<&ForestCells>().iter(world).all(|it| it.is_complete() && it.is_up_to_date());
-        let growing = world.query_filtered::<(), (With<StemId>, Or<(Without<TreeBeams>, Without<InCanopy>)>)>();
-        let is_still = stands && { growing }.iter(world).count() == 0 && world.resource::<ActiveSway>().is_settled();
+        let mut growing = world.query_filtered::<(), (With<StemId>, Or<(Without<TreeBeams>, Without<InCanopy>)>)>();
+        let is_still = stands && growing.iter(world).count() == 0 && world.resource::<ActiveSway>().is_settled();
         still_frames = if is_still { still_frames + 1 } else { 0 };
     }
 }

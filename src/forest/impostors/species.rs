@@ -154,7 +154,7 @@ pub(super) fn bake_impostor_species(
         let Baked { species, atlas } = match made {
             Ok(made) => made,
             Err(panic) => {
-                let name = species.get(*id).map_or("unknown", |species| &species.name);
+                let name = species.get(*id).map_or("unknown", |species| species.name.as_str());
                 error!("species `{name}`: {panic}; its last good impostors stay");
                 failed.insert(*id);
                 return false;
