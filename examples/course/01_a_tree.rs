@@ -57,6 +57,6 @@ fn change_the_wind(keys: Res<ButtonInput<KeyCode>>, mut wind: ResMut<Wind>) {
 }
 
 fn spawn_camera(mut commands: Commands) {
-    let place = Transform::from_xyz(3.5, 2.2, 21.0).looking_at(Vec3::new(1.0, 6.6, 0.0), Vec3::Y);
+    let place = Transform::from_xyz(4.0, 1.7, 17.5).looking_at(Vec3::new(1.4, 6.0, 0.0), Vec3::Y);
     commands.spawn((Camera3d::default(), FreeCamera::default(), place));
 }

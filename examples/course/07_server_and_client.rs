@@ -66,7 +66,7 @@ fn machine(changes: ForestChanges, player: Vec3) -> App {
     let plan = ForestPlan { seed: 3, cell_m: 32.0, areas: vec![area], ..default() };
     let plan = app.world_mut().resource_mut::<Assets<ForestPlan>>().add(plan);
     // Branches near the player are entities, for whatever the server has to know of them.
-    let settings = ForestSettings { trees_to_m: 50.0, far_to_m: 0.0, articulated_to_m: 200.0, ..default() };
+    let settings = ForestSettings { trees_to_m: 30.0, far_to_m: 0.0, articulated_to_m: 200.0, ..default() };
     app.world_mut().spawn((Forest::new(plan), settings, changes));
     app.world_mut().spawn((Viewpoint, Transform::from_translation(player)));
     app
@@ -77,7 +77,7 @@ fn change_the_wood(machine: &mut App) -> Result<(), SettingError> {
     let mut state = SystemState::<ForestEditor>::new(machine.world_mut());
     let Ok(mut editor) = state.get_mut(machine.world_mut()) else { return Ok(()) };
     let mut of = None;
-    for place in [Vec2::ZERO, Vec2::new(8.0, 3.0), Vec2::new(-10.0, 6.0)] {
+    for place in [Vec2::ZERO, Vec2::new(18.0, 8.0), Vec2::new(-15.0, 12.0)] {
         let Some((forest, stem)) = editor.nearest(place, 30.0) else { continue };
         editor.fell(forest, stem.id)?;
         of = Some(forest);
@@ -101,7 +101,7 @@ fn move_the_player(machine: &mut App, to: Vec3) {
 /// Updates until everything stands that is wanted about the player, has its branches, and knows what shelters it.
 fn settle(machine: &mut App) {
     let mut still_frames = 0;
-    while still_frames < 300 {
+    while still_frames < 100 {
         machine.update();
         std::thread::sleep(Duration::from_millis(1));
         let world = machine.world_mut();

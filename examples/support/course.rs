@@ -12,13 +12,14 @@ use super::{
 };
 use bevy::{
     app::PluginGroupBuilder, camera::RenderTarget, camera_controller::free_camera::FreeCameraPlugin,
-    core_pipeline::prepass::DepthPrepass, ecs::lifecycle::Add, light::NotShadowCaster, prelude::*,
+    core_pipeline::prepass::DepthPrepass, ecs::lifecycle::Add, light::NotShadowCaster, math::DVec2, prelude::*,
 };
-use bevy_windwood::{LevelGround, prelude::*};
+use bevy_windwood::prelude::*;
 use clap::Parser;
 use std::{
     path::PathBuf,
     process::ExitCode,
+    sync::Arc,
     time::{Duration, Instant},
 };
 
@@ -157,10 +158,17 @@ fn spawn_evening(
     dusk::spawn_light(&mut commands, &mut meshes, &mut materials);
 }
 
-/// A system that spawns level ground with grass on it, as a place for everything else.
+/// The meadow's ground: level about the origin, with hills beyond.
+fn meadow_height_m(at: DVec2) -> f64 {
+    let beyond = ((at.length() - 35.0) / 140.0).clamp(0.0, 1.0);
+    let hills = 7.0 + 6.0 * (at.x / 67.0).sin() * (at.y / 58.0).cos() + 3.0 * (at.x / 29.0 + at.y / 41.0).sin();
+    beyond * beyond * (3.0 - 2.0 * beyond) * hills
+}
+
+/// A system that spawns a meadow, which is level about the origin: a place for everything else.
 pub fn spawn_meadow(mut commands: Commands) {
     commands.spawn((
-        Terrain::new(LevelGround(0.0)),
+        Terrain::new(meadow_height_m),
         TerrainSettings { reach_m: 1000.0, builds_at_once: 64, chunks_per_frame: 64, ..default() },
     ));
     let short = Tuft { blades: 14, shortest_m: 0.1, longest_m: 0.4, narrowest_m: 0.006, widest_m: 0.013, ..default() };
@@ -178,6 +186,7 @@ pub fn spawn_meadow(mut commands: Commands) {
             ..default()
         };
         let patch = GrassPatch { sward, look, ..default() };
-        commands.spawn((GrassField { patch, patches_per_frame: 16 }, NotShadowCaster));
+        let ground = GrassGround(Arc::new(meadow_height_m));
+        commands.spawn((GrassField { patch, patches_per_frame: 16 }, ground, NotShadowCaster));
     }
 }
