@@ -1,5 +1,5 @@
-//! What goes wrong with what is drawn: a species that is removed while its trees are drawn, ground that panics, windows and viewports of no
-//! size, a device with a quarter of the usual memory. Needs a Vulkan driver. Mesa's software one will do.
+//! What goes wrong with what is drawn: a species that is removed while its trees are drawn, ground that panics, windows of no size, viewports
+//! of a pixel, a device with a quarter of the usual memory. Needs a Vulkan driver. Mesa's software one will do.
 
 mod support;
 
@@ -51,7 +51,6 @@ fn a_quarter_of_the_memory_draws_the_same_forest() {
     let quarter = WgpuLimits {
         max_storage_buffer_binding_size: usual.max_storage_buffer_binding_size / 4,
         max_buffer_size: usual.max_buffer_size / 4,
-        max_texture_dimension_2d: usual.max_texture_dimension_2d / 4,
         ..usual.clone()
     };
     let [whole, quarter] = [usual, quarter].map(|limits| {
@@ -112,7 +111,7 @@ impl OneTree {
 }
 
 #[test]
-fn windows_and_viewports_of_no_size_draw_nothing_and_come_back() {
+fn windows_of_no_size_and_viewports_of_a_pixel_draw_nothing_and_come_back() {
     let mut scene = OneTree::new();
     let before = scene.covered();
     assert!(before > 0.03, "{before}");
@@ -130,7 +129,8 @@ fn windows_and_viewports_of_no_size_draw_nothing_and_come_back() {
     // Viewports in a picture.
     let target = RenderTarget::Image(scene.target.clone().into());
     scene.app.world_mut().entity_mut(camera).insert(target);
-    for size in [UVec2::ONE, UVec2::ZERO, UVec2::new(0, 20), UVec2::new(20, 0)] {
+    // One of no pixels is refused by Bevy itself, whose clusters of lights cannot be made for it.
+    for size in [UVec2::ONE, UVec2::new(1, 20), UVec2::new(20, 1)] {
         scene.set_viewport(Some(size));
         scene.step();
     }
@@ -142,6 +142,7 @@ fn windows_and_viewports_of_no_size_draw_nothing_and_come_back() {
 #[test]
 fn terrain_whose_ground_panics_is_drawn_where_it_does_not() {
     let mut scene = OneTree::new();
+    let tree = scene.covered();
     let ground = |at: DVec2| {
         assert!(at.x < 40.0, "the level ends here");
         0.0
@@ -157,10 +158,10 @@ fn terrain_whose_ground_panics_is_drawn_where_it_does_not() {
     assert!(drawn > 0);
     // The ground under the camera is there.
     let picture = scene.covered();
-    assert!(picture > 0.4, "{picture} of the picture is drawn");
+    assert!(picture > tree + 0.15, "{tree} of the picture is tree, {picture} tree and ground");
     scene.app.world_mut().entity_mut(terrain).insert(Terrain::new(|_: DVec2| 0.0));
     let is_complete = update_until(&mut scene.app, |world| {
         world.get::<TerrainChunks>(terrain).is_some_and(TerrainChunks::is_complete)
     });
-    assert!(is_complete && scene.covered() >= picture);
+    assert!(is_complete && scene.covered() > picture + 0.02);
 }

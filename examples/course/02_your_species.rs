@@ -26,7 +26,7 @@ use support::course::{Course, spawn_meadow};
 const FILE: &str = "course/rowan.species.ron";
 
 /// Ages, years, and places from left to right, m.
-const ROW: [(f32, f32); 4] = [(4.0, -7.6), (10.0, -4.4), (22.0, 0.0), (45.0, 6.6)];
+const ROW: [(f32, f32); 4] = [(4.0, -5.4), (10.0, -3.2), (22.0, 0.4), (45.0, 5.6)];
 
 fn main() -> ExitCode {
     let course = Course::begin("02_your_species");
@@ -34,7 +34,7 @@ fn main() -> ExitCode {
     app.add_plugins((course.engine(), WindwoodPlugins))
         .insert_resource(Wind { speed: 6.0, ..default() })
         // Berries are not drawn, but early autumn is when a rowan is looked at.
-        .insert_resource(Season { year: 0.735 })
+        .insert_resource(Season { year: 0.725 })
         .add_systems(Startup, (plant_a_row, spawn_camera, spawn_meadow))
         .add_systems(Update, (tell_of_the_file, pass_the_year));
     course.run(&mut app, "Space  a month passes")
@@ -68,6 +68,6 @@ fn pass_the_year(keys: Res<ButtonInput<KeyCode>>, mut season: ResMut<Season>) {
 }
 
 fn spawn_camera(mut commands: Commands) {
-    let place = Transform::from_xyz(0.6, 1.9, 17.5).looking_at(Vec3::new(0.2, 4.1, 0.0), Vec3::Y);
+    let place = Transform::from_xyz(1.0, 1.6, 12.6).looking_at(Vec3::new(0.6, 3.7, 0.0), Vec3::Y);
     commands.spawn((Camera3d::default(), FreeCamera::default(), place));
 }

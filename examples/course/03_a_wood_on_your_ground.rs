@@ -83,11 +83,11 @@ fn spawn_level(
     // Grass over the whole clearing, but not on the path.
     let on_path = |at: DVec2| (at.y - 40.0 + 0.1 * at.x).abs() < 1.5;
     let meadow = move |at: DVec2| if on_path(at) { f64::NAN } else { ground.height_m(at) };
-    let sward = Sward { width_m: 12.0, depth_m: 12.0, tufts_per_m2: 7.0, ..default() };
+    let sward = Sward { width_m: 12.0, depth_m: 12.0, tufts_per_m2: 11.0, ..default() };
     let look = GrassLook { thins_from_m: 14.0, vanishes_at_m: 60.0, ..default() };
     let field = GrassField { patch: GrassPatch { sward, look, ..default() }, patches_per_frame: 16 };
     commands.spawn((field, GrassGround(Arc::new(meadow)), NotShadowCaster));
-    let base_color = Color::srgb(0.29, 0.30, 0.17);
+    let base_color = Color::srgb(0.30, 0.26, 0.17);
     let earth = StandardMaterial { base_color, perceptual_roughness: 1.0, reflectance: 0.1, ..default() };
     commands.spawn((Mesh3d(meshes.add(mesh)), MeshMaterial3d(materials.add(earth))));
     Ok(())
@@ -117,6 +117,6 @@ fn spawn_camera(mut commands: Commands) {
     let above = |x: f32, z: f32, above_m: f32| {
         Vec3::new(x, height_m(DVec2::new(f64::from(x), f64::from(z))) as f32 + above_m, z)
     };
-    let place = Transform::from_translation(above(58.0, 66.0, 6.0)).looking_at(above(4.0, 16.0, 3.0), Vec3::Y);
+    let place = Transform::from_translation(above(41.0, 45.0, 2.0)).looking_at(above(2.0, 33.0, 5.0), Vec3::Y);
     commands.spawn((Camera3d::default(), FreeCamera::default(), place));
 }

@@ -105,12 +105,13 @@ impl Course {
         capture::begin(app)?;
         app.world_mut().resource_mut::<LevelOfDetail>().changes_per_frame = 1_000_000;
         wait_until_drawn(app)?;
-        let target = capture::target(app, image.render_size());
         for number in 0..*frames {
             let passes_s = if number == 0 { at.unwrap_or(self.picture_s) } else { *interval };
             if passes_s > 0.0 {
                 let_time_pass(app, passes_s);
             }
+            // A camera takes notice of another target when that is new.
+            let target = capture::target(app, image.render_size());
             let world = app.world_mut();
             let cameras: Vec<Entity> = world.query_filtered::<Entity, With<Camera3d>>().iter(world).collect();
             for camera in &cameras {

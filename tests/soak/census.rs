@@ -7,10 +7,7 @@ use bevy::{
         texture::GpuImage,
     },
 };
-use bevy_windwood::{
-    prelude::*,
-    tree::{SpeciesModels, TreeModel},
-};
+use bevy_windwood::tree::{SpeciesModels, TreeModel};
 use std::collections::BTreeMap;
 
 /// What there is in an app.
