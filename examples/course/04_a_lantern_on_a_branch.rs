@@ -78,7 +78,7 @@ fn hang_a_lantern(
     commands.spawn((part(meshes.add(Cylinder::new(0.10, 0.03)), -0.11), iron.clone()));
     commands.spawn((part(meshes.add(Cone::new(0.13, 0.10)), 0.15), iron.clone()));
     commands.spawn((part(meshes.add(Cylinder::new(0.006, CHAIN_M - 0.15)), 0.5 * (CHAIN_M + 0.15)), iron));
-    let light = PointLight { color: Color::srgb(1.0, 0.72, 0.42), intensity: 9000.0, range: 25.0, ..default() };
+    let light = PointLight { color: Color::srgb(1.0, 0.72, 0.42), intensity: 30_000.0, range: 25.0, ..default() };
     commands.spawn((light, ChildOf(lantern)));
 }
 
@@ -114,6 +114,6 @@ fn blow(mut commands: Commands, keys: Res<ButtonInput<KeyCode>>, mut wind: ResMu
 }
 
 fn spawn_camera(mut commands: Commands) {
-    let place = Transform::from_xyz(3.0, 1.7, 11.0).looking_at(Vec3::new(0.0, 3.2, 0.0), Vec3::Y);
+    let place = Transform::from_xyz(1.6, 1.6, 8.4).looking_at(Vec3::new(-0.9, 2.9, 0.0), Vec3::Y);
     commands.spawn((Camera3d::default(), FreeCamera::default(), place));
 }

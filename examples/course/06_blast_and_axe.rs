@@ -100,6 +100,6 @@ fn follow_the_clock(
 }
 
 fn spawn_camera(mut commands: Commands) {
-    let place = Transform::from_xyz(1.0, 1.9, 15.5).looking_at(Vec3::new(0.5, 3.6, 0.0), Vec3::Y);
+    let place = Transform::from_xyz(1.0, 1.7, 13.2).looking_at(Vec3::new(0.6, 3.3, 0.0), Vec3::Y);
     commands.spawn((Camera3d::default(), FreeCamera::default(), place));
 }

@@ -76,20 +76,20 @@ fn plant(mut commands: Commands, assets: Res<AssetServer>, mut plans: ResMut<Ass
         ..default()
     };
     let ferns = Area {
-        shape: Shape::Rectangle { min_m: [-14.0, -9.0], max_m: [14.0, 6.0] },
-        density_per_ha: 9000.0,
-        // In groups, with paths between.
-        pattern: CountModel::NegativeBinomial { k: 0.9 },
+        shape: Shape::Rectangle { min_m: [-14.0, -9.0], max_m: [14.0, 1.8] },
+        density_per_ha: 14000.0,
+        // In groups, and nearly closed.
+        pattern: CountModel::NegativeBinomial { k: 3.0 },
         quadrat_m: 2.5,
         least_distance_m: 0.45,
-        stock: vec![stock("bracken", 8.0, 4.0), stock("bilberry", 1.5, 8.0), stock("rowan_sapling", 0.4, 6.0)],
+        stock: vec![stock("bracken", 8.0, 4.0), stock("bilberry", 1.0, 8.0)],
         ..default()
     };
     let plan = plans.add(ForestPlan { seed: 2, cell_m: 16.0, areas: vec![ferns], ..default() });
     commands.spawn((Forest::new(plan), ForestSettings { trees_to_m: 40.0, far_to_m: 100.0, ..default() }));
     for (species, seed, age_years, place) in [
         ("scots_pine", 4, 70.0, PINE.0),
-        ("hazel", 2, 7.0, Vec2::new(1.4, 0.9)),
+        ("hazel", 2, 4.0, Vec2::new(2.2, 0.5)),
         ("birch", 6, 20.0, Vec2::new(-7.5, -6.0)),
         ("norway_spruce", 3, 12.0, Vec2::new(8.0, -7.0)),
         ("beech", 1, 45.0, Vec2::new(-2.5, -14.0)),
@@ -130,5 +130,6 @@ fn follow(
     mut camera: Single<&mut Transform, With<Camera3d>>,
 ) {
     let at = character.translation;
-    **camera = Transform::from_xyz(0.6 * at.x + 1.2, 1.9, at.z + 5.6).looking_at(at - Vec3::Y * 0.1, Vec3::Y);
+    **camera =
+        Transform::from_xyz(0.7 * at.x + 0.6, 2.3, at.z + 4.8).looking_at(at - Vec3::new(0.5, 0.25, 0.0), Vec3::Y);
 }
