@@ -1,5 +1,5 @@
-//! A game that goes on and on: it walks, teleports, fells, plants, changes the wind, lets trees come and go, all at random, and draws. Every minute
-//! of its time it goes home and puts everything away. What is there then must be what was there before: entities, handles, memory, buffers
+//! A game that goes on and on: it walks, teleports, fells, plants, changes the wind, lets trees come and go, all at random. Every minute of its
+//! time it goes home, puts everything away, and draws. What is there then must be what was there before: entities, handles, memory, buffers
 //! on the GPU. Needs a Vulkan driver. Mesa's software one will do.
 //!
 //! ```sh

@@ -69,6 +69,9 @@ impl Game {
         };
         let forest = world.spawn((Forest::new(plan), settings)).id();
         let camera = world.spawn((capture::camera(&target), Pusher::default(), WindListener::default(), HOME)).id();
+        world.get_mut::<Camera>(camera).expect("a camera").is_active = false;
+        // Where the camera is, somebody is who keeps the forest about it.
+        world.spawn((Viewpoint, ChildOf(camera)));
         world.spawn((DirectionalLight { shadow_maps_enabled: true, ..default() }, HOME));
         world.insert_resource(Wind { fade_s: 0.5, ..default() });
         world.resource_mut::<LevelOfDetail>().changes_per_frame = 10_000;
@@ -90,7 +93,7 @@ impl Game {
         for _ in 0..(seconds / FRAME_S).round() as u32 {
             self.walk();
             self.act();
-            capture::step(&mut self.app);
+            self.app.update();
         }
         self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     }
@@ -173,14 +176,26 @@ impl Game {
         self.app.insert_resource(Season::SUMMER);
         for place in [Transform::from_xyz(-HALF_M, 2.0, -HALF_M), HOME] {
             *self.app.world_mut().get_mut::<Transform>(self.camera).expect("a camera") = place;
-            (0..3).for_each(|_| capture::step(&mut self.app));
+            (0..3).for_each(|_| self.app.update());
             self.rest();
         }
         // Trees that were touched come to rest, and what lingers goes.
         self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(0.5)));
-        (0..80).for_each(|_| capture::step(&mut self.app));
+        (0..80).for_each(|_| self.app.update());
         self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
-        (0..20).for_each(|_| capture::step(&mut self.app));
+        self.draw();
+    }
+
+    /// Draws some frames. In all others the camera is switched off: to draw takes a hundred times as long as all else.
+    fn draw(&mut self) {
+        self.switch_camera(true);
+        (0..6).for_each(|_| capture::step(&mut self.app));
+        self.switch_camera(false);
+        self.app.update();
+    }
+
+    fn switch_camera(&mut self, is_active: bool) {
+        self.app.world_mut().get_mut::<Camera>(self.camera).expect("a camera").is_active = is_active;
     }
 
     fn rest(&mut self) {
@@ -195,9 +210,8 @@ impl Game {
                 && world.resource::<ActiveSway>().is_settled()
                 && world.resource::<ActiveWind>().is_settled()
         };
-        // Each frame is rendered to its end: frames that wait for a slow device would pile up.
         let rests = (0..6000).any(|_| {
-            capture::step(&mut self.app);
+            self.app.update();
             std::thread::sleep(Duration::from_millis(5));
             is_at_rest(self.app.world_mut())
         });
