@@ -84,6 +84,7 @@ impl Game {
             }
         }
         game.go_home();
+        game.draw();
         game
     }
 
@@ -183,10 +184,9 @@ impl Game {
         self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(0.5)));
         (0..80).for_each(|_| self.app.update());
         self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
-        self.draw();
     }
 
-    /// Draws some frames. In all others the camera is switched off: to draw takes a hundred times as long as all else.
+    /// Draws some frames, so that all is on the device. In all others the camera is switched off: to draw takes a hundred times as long as all else.
     fn draw(&mut self) {
         self.switch_camera(true);
         (0..6).for_each(|_| capture::step(&mut self.app));
