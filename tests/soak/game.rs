@@ -210,11 +210,14 @@ impl Game {
                 && world.resource::<ActiveSway>().is_settled()
                 && world.resource::<ActiveWind>().is_settled()
         };
+        // Winds fade in the game's time.
+        self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(FRAME_S)));
         let rests = (0..6000).any(|_| {
             self.app.update();
             std::thread::sleep(Duration::from_millis(5));
             is_at_rest(self.app.world_mut())
         });
+        self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
         assert!(rests, "the game did not come to rest");
     }
 }
