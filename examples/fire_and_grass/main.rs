@@ -7,7 +7,6 @@
 //!
 //! `cargo run --example fire_and_grass -- --help` lists the options.
 
-mod dusk;
 mod ground;
 mod options;
 mod scene;

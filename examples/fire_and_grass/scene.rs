@@ -1,9 +1,9 @@
 //! Meadow, fire, logs and trees.
 
 use crate::{
-    dusk, ground,
+    ground,
     options::{Options, View},
-    support::{options::SceneOptions, scene::Scene},
+    support::{dusk, options::SceneOptions, scene::Scene},
     window,
 };
 use bevy::{light::NotShadowCaster, math::DVec2, prelude::*};

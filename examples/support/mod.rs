@@ -5,7 +5,9 @@
 
 pub mod arguments;
 pub mod capture;
+pub mod course;
 pub mod daylight;
+pub mod dusk;
 pub mod effects;
 pub mod landscape;
 pub mod options;

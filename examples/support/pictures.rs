@@ -11,10 +11,10 @@ use image::RgbaImage;
 use std::time::{Duration, Instant};
 
 /// Longest wait for wind, ground and trees.
-const TIMEOUT: Duration = Duration::from_secs(600);
+pub const TIMEOUT: Duration = Duration::from_secs(600);
 
 /// Frames before the first picture. Pipelines, instances and levels of detail of what comes into view take some frames.
-const WARM_UP_FRAMES: usize = 6;
+pub const WARM_UP_FRAMES: usize = 6;
 
 /// Renders the pictures that the options ask for.
 ///
@@ -57,13 +57,17 @@ pub fn render<S: Scene>(app: &mut App) -> Result<(), String> {
 
 /// Lets time go by, 60 frames a second, none of which is rendered.
 fn run(app: &mut App, seconds: f64) {
-    let frames = (60.0 * seconds).ceil().max(1.0);
-    let frame = Duration::from_secs_f64(seconds / frames);
     set_cameras(app, false);
-    app.insert_resource(TimeUpdateStrategy::ManualDuration(frame));
+    let_time_pass(app, seconds);
+    set_cameras(app, true);
+}
+
+/// Lets time go by, 60 frames a second, and stops it again.
+pub fn let_time_pass(app: &mut App, seconds: f64) {
+    let frames = (60.0 * seconds).ceil().max(1.0);
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(seconds / frames)));
     (0..frames as u32).for_each(|_| app.update());
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
-    set_cameras(app, true);
 }
 
 fn set_cameras(app: &mut App, is_active: bool) {
@@ -87,8 +91,16 @@ fn wait_until_ready<S: Scene>(app: &mut App) -> Result<(), String> {
     Ok(())
 }
 
-/// Whether the wind blows and everything has its meshes.
+/// Whether the scene is spawned, and drawn as far as it is.
 fn is_ready<S: Scene>(world: &mut World) -> Result<bool, String> {
+    Ok(is_drawn(world)? && world.resource_scope(|world, scene: Mut<S>| scene.is_spawned(world))?)
+}
+
+/// Whether the wind blows and everything has its meshes.
+///
+/// # Errors
+/// If a species could not be loaded.
+pub fn is_drawn(world: &mut World) -> Result<bool, String> {
     let assets = world.resource::<AssetServer>().clone();
     if let Some(tree) = world.query::<&Tree>().iter(world).find(|tree| assets.load_state(&tree.species).is_failed()) {
         return Err(format!("{:?} could not be loaded; see the error above", tree.species.path()));
@@ -98,9 +110,7 @@ fn is_ready<S: Scene>(world: &mut World) -> Result<bool, String> {
     let fields = world.query::<&GrassFieldPatches>().iter(world).all(GrassFieldPatches::is_complete);
     let fires = world.query_filtered::<(), Pending<Fire>>().iter(world).count();
     let has_ground = world.query::<&TerrainChunks>().iter(world).all(TerrainChunks::is_complete);
-    let is_spawned = world.resource_scope(|world, scene: Mut<S>| scene.is_spawned(world))?;
-    Ok(is_spawned
-        && world.resource::<ActiveSway>().is_ready()
+    Ok(world.resource::<ActiveSway>().is_ready()
         && has_ground
         && fields
         && patches + fires == 0

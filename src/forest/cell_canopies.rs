@@ -1,11 +1,13 @@
 //! The stand that the trees of a cell stand in, which is worked out in the background.
 
 use super::stand::Stand;
-use crate::wind::Canopy;
+use crate::{
+    background::{Work, spawn_work},
+    wind::Canopy,
+};
 use bevy::{
     math::{DVec2, FloatExt},
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task},
 };
 use std::sync::Arc;
 
@@ -25,16 +27,21 @@ pub(super) struct CellCanopies {
 }
 
 /// The stand of a cell, which is being worked out.
-pub(super) type CanopyTask = Task<CellCanopies>;
+pub(super) type CanopyTask = Work<CellCanopies>;
 
 impl CellCanopies {
     /// Has the stand of a cell with that least corner and side worked out.
     pub fn spawn(stand: Arc<Stand>, corner_m: DVec2, cell_m: f32) -> CanopyTask {
-        AsyncComputeTaskPool::get().spawn(async move {
+        spawn_work(move || {
             let side = 1 + ((cell_m / SPACING_M) as u32).clamp(1, MOST_PLACES - 1);
             let spacing_m = cell_m / (side - 1) as f32;
             Self { corner_m, spacing_m, side, canopies: stand.canopies(corner_m, spacing_m, side) }
         })
+    }
+
+    /// That of any cell in the open.
+    pub fn open() -> Self {
+        Self { corner_m: DVec2::ZERO, spacing_m: SPACING_M, side: 2, canopies: vec![Canopy::default(); 4] }
     }
 
     /// The stand at a place of the cell: between the four places about it.

@@ -13,7 +13,7 @@ use super::{
 #[cfg(feature = "render")]
 use crate::render::{impostors::near_mask::MaskRange, instances::components::HasImpostor};
 use crate::{
-    background::take_finished,
+    background::{Work, WorkerPanic, spawn_work, take_finished},
     cells::{Cell, CellSet, CellStore, CellStream, Orders, ViewerPose},
     ground::Ground,
     scatter::Planter,
@@ -21,11 +21,7 @@ use crate::{
     tree::Species,
     viewpoint::Viewpoints,
 };
-use bevy::{
-    platform::collections::HashMap,
-    prelude::*,
-    tasks::{AsyncComputeTaskPool, Task},
-};
+use bevy::{platform::collections::HashMap, prelude::*};
 use std::{collections::BTreeMap, sync::Arc};
 
 /// A tile's plants, and its cells packed for the store.
@@ -50,13 +46,13 @@ pub struct ForestCells {
     tile_cells: i32,
     stream: CellStream,
     orders: Orders,
-    pub(super) planting: Vec<(IVec2, Task<PackedTile>)>,
+    pub(super) planting: Vec<(IVec2, Work<PackedTile>)>,
     pub(super) tiles: HashMap<IVec2, KnownTile>,
     /// What is other than in the plan; none until that has been found out.
     pub(super) changes: Option<ChangeIndex>,
     /// Tiles with changes that are still to be planted again, by row and column, and the cells of each in which near trees may be others.
     pub(super) changed_tiles: BTreeMap<(i32, i32), Vec<IVec2>>,
-    pub(super) replanting: Vec<(Replanting, Task<PackedTile>)>,
+    pub(super) replanting: Vec<(Replanting, Work<PackedTile>)>,
     /// Tiles of the plan before, whose cells are in the store.
     outdated: usize,
     /// Tiles that impostors have still to be made of, where there are impostors.
@@ -68,10 +64,12 @@ pub struct ForestCells {
     stand_generation: u64,
     /// Whether it has to be worked out again, and the task that does.
     pub(super) stand_is_due: bool,
-    pub(super) stand_task: Option<Task<Stand>>,
+    pub(super) stand_task: Option<Work<Stand>>,
     /// From where on impostors stand for its trees, m; none until they are drawn.
     #[cfg(feature = "render")]
     pub(super) impostors_from_m: Option<f32>,
+    /// Whether it was told that a worker has panicked.
+    has_told: bool,
     generation: u64,
     /// The generation since which tiles and numbers of species are the same.
     tiles_since: u64,
@@ -131,6 +129,7 @@ impl ForestCells {
             for_impostors: None,
             #[cfg(feature = "render")]
             impostors_from_m: None,
+            has_told: false,
             generation,
             tiles_since: generation,
         })
@@ -235,7 +234,7 @@ impl ForestCells {
             UpToDate(tiles).contains(tile).then(|| {
                 let changes = changes.as_ref().and_then(|changes| changes.tile(tile));
                 let planter = CellPlanter { planter: planter.clone(), ground: ground.clone(), changes };
-                AsyncComputeTaskPool::get().spawn(async move { planter.plants(cell) })
+                spawn_work(move || planter.plants(cell))
             })
         };
         (near, species, settings, plant)
@@ -259,9 +258,9 @@ impl ForestCells {
     }
 
     /// Has a tile planted.
-    pub(super) fn plant_tile(&self, tile: IVec2) -> Task<PackedTile> {
+    pub(super) fn plant_tile(&self, tile: IVec2) -> Work<PackedTile> {
         let (planter, side) = (self.cell_planter(tile), self.tile_cells);
-        AsyncComputeTaskPool::get().spawn(async move {
+        spawn_work(move || {
             let planted = PlantedTile::plant(&planter, tile, side);
             let packed = planted.cells().map(|(cell, plants)| (cell, planter.pack(cell, plants))).collect();
             (Arc::new(planted), packed)
@@ -278,8 +277,24 @@ impl ForestCells {
     fn receive(&mut self) {
         for (place, packed) in take_finished(&mut self.planting) {
             if self.stream.fulfil(place) {
+                let packed = packed.unwrap_or_else(|panic| self.bare_tile(place, &panic));
                 self.take_tile(place, packed);
             }
+        }
+    }
+
+    /// What stands in place of a tile whose worker has panicked: the ground is a game's own, and would do so again. It is told once.
+    fn bare_tile(&mut self, tile: IVec2, panic: &WorkerPanic) -> PackedTile {
+        self.tell(panic);
+        let (planter, bare) = (self.cell_planter(tile), PlantedTile::bare(tile, self.tile_cells));
+        let packed = bare.cells().map(|(cell, plants)| (cell, planter.pack(cell, plants))).collect();
+        (Arc::new(bare), packed)
+    }
+
+    /// Tells once that workers panic.
+    pub(super) fn tell(&mut self, panic: &WorkerPanic) {
+        if !std::mem::replace(&mut self.has_told, true) {
+            error!("forest: {panic}; what its workers cannot plant stays as it is");
         }
     }
 

@@ -138,6 +138,13 @@ impl ForestCells {
     /// Takes over changed tiles that were planted again, and has the next ones planted.
     pub(super) fn replant_changed_tiles(&mut self) {
         for (Replanting { tile, cells }, packed) in take_finished(&mut self.replanting) {
+            let packed = match packed {
+                Ok(packed) => packed,
+                Err(panic) => {
+                    self.tell(&panic);
+                    continue;
+                }
+            };
             if self.tiles.get(&tile).is_some_and(|known| !known.is_outdated) {
                 let stems = packed.0.clone();
                 self.take_tile(tile, packed);

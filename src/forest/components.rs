@@ -82,7 +82,8 @@ impl ForestSettings {
     }
 }
 
-/// Ground of your own for a [`Forest`], in place of the world's [`Terrain`](crate::terrain::Terrain).
+/// Ground of your own for a [`Forest`], in place of the world's [`Terrain`](crate::terrain::Terrain). It is read on background threads. Where
+/// it panics that is told once, with an error, and the tile of cells that was being planted stays bare.
 #[derive(Component, Clone)]
 pub struct ForestGround(pub Arc<dyn Ground>);
 

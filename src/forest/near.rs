@@ -11,6 +11,7 @@ use super::{
     stem_id::StemId,
 };
 use crate::{
+    background::Work,
     cells::{CellSet, CellStream, Orders, StreamSettings, ViewerPose},
     scatter::Planted,
     setting::SettingError,
@@ -20,7 +21,7 @@ use crate::{
 use bevy::{
     platform::collections::HashMap,
     prelude::*,
-    tasks::{Task, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 use std::sync::Arc;
 
@@ -28,7 +29,7 @@ use std::sync::Arc;
 const COMMON_CELL_M: f32 = 64.0;
 
 /// A cell that is planted alone.
-pub(super) type CellTask = Task<Vec<(StemId, Planted)>>;
+pub(super) type CellTask = Work<Vec<(StemId, Planted)>>;
 
 /// Where the plants of a cell come from.
 pub(super) enum Planting {
@@ -225,7 +226,8 @@ impl NearTrees {
         let (changes, drawn_changes) = (&mut self.changes, &mut self.drawn_changes);
         planting.retain_mut(|(cell, source)| {
             let planted = match source {
-                Planting::Alone(task) => block_on(poll_once(task)),
+                // It has been planted before; where that cannot be done again, nothing stands there.
+                Planting::Alone(task) => block_on(poll_once(task)).map(Result::unwrap_or_default),
                 Planting::Tile => {
                     let tile = tiles.get(&tile_of(*cell, *tile_cells));
                     // One that nobody wants any more is waited for no longer.

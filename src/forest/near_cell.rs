@@ -79,6 +79,12 @@ impl NearCell {
             let (_, mut task) = task.unwrap_or_else(|| (generation, work_out()));
             match block_on(poll_once(&mut task)) {
                 Some(canopies) => {
+                    let canopies = canopies.unwrap_or_else(|panic| {
+                        error_once!(
+                            "forest: {panic}; trees stand in the open where the wind among them cannot be worked out"
+                        );
+                        CellCanopies::open()
+                    });
                     // Where nothing has changed, trees keep what they have been given.
                     if let Some((before, _)) = self.canopies.as_ref().filter(|(_, others)| *others == canopies) {
                         let same = self.spawned.iter_mut().filter(|tree| tree.canopy_of == *before);

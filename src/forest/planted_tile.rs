@@ -61,6 +61,13 @@ impl PlantedTile {
         Self { first, side, plants, ids, ends: ends.into(), fingerprint }
     }
 
+    /// A tile in which nothing stands.
+    pub fn bare(tile: IVec2, side: i32) -> Self {
+        let ends = vec![0; (side * side) as usize];
+        let fingerprint = fingerprint(&[], &ends);
+        Self { first: tile * side, side, plants: Vec::new(), ids: Vec::new(), ends: ends.into(), fingerprint }
+    }
+
     /// All of its plants.
     #[cfg(any(feature = "render", test))]
     pub fn plants(&self) -> &[Planted] {

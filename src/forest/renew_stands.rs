@@ -6,10 +6,10 @@ use super::{
     stand::{Stand, StandSpecies},
     stand_changes::CellBalances,
 };
-use crate::{ground::Ground, scatter::Planter, tree::Season};
+use crate::{background::spawn_work, ground::Ground, scatter::Planter, tree::Season};
 use bevy::{
     prelude::*,
-    tasks::{AsyncComputeTaskPool, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 use std::sync::Arc;
 
@@ -24,7 +24,10 @@ pub(super) fn renew_stands(mut frames: Local<u32>, season: Res<Season>, mut fore
         if let Some(task) = &mut forest.stand_task {
             let Some(stand) = block_on(poll_once(task)) else { continue };
             forest.stand_task = None;
-            forest.set_stand(stand);
+            match stand {
+                Ok(stand) => forest.set_stand(stand),
+                Err(panic) => forest.tell(&panic),
+            }
         }
         if !frames.is_multiple_of(FRAMES_BETWEEN) {
             continue;
@@ -38,7 +41,7 @@ pub(super) fn renew_stands(mut frames: Local<u32>, season: Res<Season>, mut fore
         let species: Vec<_> = stand.species.iter().map(now).collect();
         let tiles = forest.changes.as_ref().map_or_else(Vec::new, |index| index.tiles());
         forest.stand_is_due = false;
-        forest.stand_task = Some(AsyncComputeTaskPool::get().spawn(async move {
+        forest.stand_task = Some(spawn_work(move || {
             let balances = balances(&tiles, &planter, &ground, &species);
             Stand { planter, ground, species, balances }
         }));

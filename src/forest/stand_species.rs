@@ -4,12 +4,18 @@ use super::{
     cells::ForestCells,
     stand::{Stand, StandSpecies},
 };
-use crate::tree::{LeafSeason, Season, Species, frontal_area_m2, individual::grow, skeleton::Skeleton, tree_pieces};
+use crate::{
+    background::{Work, spawn_work},
+    tree::{
+        LeafSeason, Season, Species, frontal_area_m2, growth::age::Age, individual::grow, no_longer_used,
+        skeleton::Skeleton, tree_pieces,
+    },
+};
 use bevy::{
     asset::LoadState,
     platform::collections::HashMap,
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 
 /// Seed of the tree that is measured.
@@ -19,7 +25,7 @@ const SEED: u64 = 1;
 #[derive(Resource, Default)]
 pub(super) struct StandSpeciesLibrary {
     known: HashMap<AssetId<Species>, StandSpecies>,
-    measuring: Vec<(AssetId<Species>, Task<StandSpecies>)>,
+    measuring: Vec<(AssetId<Species>, Work<StandSpecies>)>,
 }
 
 fn measure(species: &Species) -> StandSpecies {
@@ -47,7 +53,7 @@ impl StandSpeciesLibrary {
     fn measure(&mut self, id: AssetId<Species>, species: &Species) {
         let species = species.clone();
         self.measuring.retain(|(other, _)| *other != id);
-        self.measuring.push((id, AsyncComputeTaskPool::get().spawn(async move { measure(&species) })));
+        self.measuring.push((id, spawn_work(move || measure(&species))));
     }
 
     fn is_asked_for(&self, id: AssetId<Species>) -> bool {
@@ -66,6 +72,10 @@ pub(super) fn prepare_stands(
 ) {
     let valid = |id: AssetId<Species>| species.get(id).filter(|species| species.validate().is_ok());
     for event in events.read() {
+        if let Some(id) = no_longer_used(event) {
+            library.known.remove(&id);
+            library.measuring.retain(|(other, _)| *other != id);
+        }
         if let AssetEvent::Modified { id } = event
             && library.is_asked_for(*id)
             && let Some(species) = valid(*id)
@@ -82,6 +92,17 @@ pub(super) fn prepare_stands(
     let mut measured: Vec<AssetId<Species>> = Vec::new();
     measuring.retain_mut(|(id, task)| {
         let Some(found) = block_on(poll_once(task)) else { return true };
+        let found = found.unwrap_or_else(|panic| {
+            error!("species {id}: {panic}; its trees give no shelter from the wind");
+            StandSpecies {
+                age: Age::default(),
+                height_m: 0.0,
+                frontal_area_m2: 0.0,
+                bare_share: 1.0,
+                leaves: LeafSeason::EVERGREEN,
+                leaf_share: 1.0,
+            }
+        });
         if known.insert(*id, found) != Some(found) {
             measured.push(*id);
         }

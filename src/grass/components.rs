@@ -5,12 +5,13 @@ use super::{
     settings::{GrassLook, GrassResponse, Sward},
 };
 use crate::{
+    background::{Work, spawn_work},
     ground::{Ground, LevelGround},
     setting::SettingError,
 };
 use bevy::{
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 use std::sync::Arc;
 
@@ -60,7 +61,7 @@ pub struct Meadow {
 
 /// A meadow that is being laid out in the background.
 #[derive(Component)]
-pub(super) struct MeadowLayout(Task<Meadow>);
+pub(super) struct MeadowLayout(Work<Meadow>);
 
 /// Starts to lay out meadows that are new or have changed.
 pub(super) fn start_meadow_layouts(
@@ -87,8 +88,7 @@ pub(super) fn start_meadow_layouts(
         }
         let patch = GrassPatch::clone(&patch);
         let ground = ground.map_or_else(|| Arc::new(LevelGround::default()) as Arc<dyn Ground>, |own| own.0.clone());
-        let task = AsyncComputeTaskPool::get()
-            .spawn(async move { Meadow { blades: Arc::new(layout_blades(&patch.sward, &ground)), patch } });
+        let task = spawn_work(move || Meadow { blades: Arc::new(layout_blades(&patch.sward, &ground)), patch });
         commands.entity(entity).insert(MeadowLayout(task));
     }
 }
@@ -96,8 +96,12 @@ pub(super) fn start_meadow_layouts(
 /// Takes over meadows that have been laid out.
 pub(super) fn finish_meadow_layouts(mut commands: Commands, mut layouts: Query<(Entity, &mut MeadowLayout)>) {
     for (entity, mut layout) in &mut layouts {
-        if let Some(meadow) = block_on(poll_once(&mut layout.0)) {
-            commands.entity(entity).remove::<MeadowLayout>().insert(meadow);
+        let Some(meadow) = block_on(poll_once(&mut layout.0)) else { continue };
+        let mut entity = commands.entity(entity);
+        entity.remove::<MeadowLayout>();
+        match meadow {
+            Ok(meadow) => drop(entity.insert(meadow)),
+            Err(panic) => error!("grass patch {}: {panic}; the last good meadow stays", entity.id()),
         }
     }
 }

@@ -7,6 +7,7 @@ use super::{
     mesh::{bounds, still_mesh, swaying_mesh},
 };
 use crate::{
+    background::{Work, spawn_work},
     plugin_checks::{has_renderer, require_renderer_before},
     render::{RenderCapabilities, SwayBuffers},
 };
@@ -17,7 +18,7 @@ use bevy::{
     pbr::MaterialPlugin,
     prelude::*,
     shader::load_shader_library,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 use std::sync::Arc;
 
@@ -54,7 +55,7 @@ struct Shown(Arc<Vec<super::blades::Blade>>);
 /// A mesh that is being made.
 #[derive(Component)]
 struct MeshTask {
-    task: Task<(Mesh, Aabb)>,
+    task: Work<(Mesh, Aabb)>,
     meadow: Meadow,
 }
 
@@ -74,7 +75,7 @@ fn start_making_meshes(
             continue;
         }
         let (sways, meadow_of_task) = (capabilities.sways, meadow.clone());
-        let task = AsyncComputeTaskPool::get().spawn(async move {
+        let task = spawn_work(move || {
             let look = &meadow_of_task.patch.look;
             let mesh =
                 if sways { swaying_mesh(&meadow_of_task.blades) } else { still_mesh(&meadow_of_task.blades, look) };
@@ -96,16 +97,19 @@ fn show_patches(
     fields_without_shadow: Query<(), (With<GrassField>, With<NotShadowCaster>)>,
 ) {
     for (entity, mut making, parent) in &mut tasks {
-        let Some((mesh, bounds)) = block_on(poll_once(&mut making.task)) else { continue };
-        let patch = &making.meadow.patch;
+        let Some(made) = block_on(poll_once(&mut making.task)) else { continue };
         let mut entity = commands.entity(entity);
+        entity.remove::<MeshTask>();
+        let (mesh, bounds) = match made {
+            Ok(made) => made,
+            Err(panic) => {
+                error!("grass patch {}: {panic}; the last good mesh stays", entity.id());
+                continue;
+            }
+        };
+        let patch = &making.meadow.patch;
         // The box holds every pose; the mesh's own would be that of the roots.
-        entity.remove::<MeshTask>().insert((
-            Mesh3d(meshes.add(mesh)),
-            bounds,
-            NoAutoAabb,
-            Shown(making.meadow.blades.clone()),
-        ));
+        entity.insert((Mesh3d(meshes.add(mesh)), bounds, NoAutoAabb, Shown(making.meadow.blades.clone())));
         if parent.is_some_and(|parent| fields_without_shadow.contains(parent.parent())) {
             entity.insert(NotShadowCaster);
         }

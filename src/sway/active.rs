@@ -2,12 +2,12 @@
 
 use super::response::{SwaySettings, WindResponse};
 use crate::{
-    background::drop_in_background,
+    background::{Work, drop_in_background, spawn_work},
     wind::{ActiveWind, NumberedWind, WindClock},
 };
 use bevy::{
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ pub struct ActiveSway {
     slots: [Option<NumberedResponse>; 2],
     /// The slot of the wind that fades out, or that blows alone.
     from: usize,
-    building: Option<(u64, Task<WindResponse>)>,
+    building: Option<(u64, Work<WindResponse>)>,
     /// The tables of the incoming wind, until they are released.
     incoming: Option<NumberedResponse>,
     /// Whether they have to be released before their wind begins.
@@ -118,8 +118,7 @@ pub(super) fn rebuild_tables(mut wind: ResMut<ActiveWind>, settings: Res<SwaySet
         return;
     }
     sway.settings = wanted.clone();
-    let build = AsyncComputeTaskPool::get().spawn(async move { WindResponse::new(field, &wanted) });
-    sway.building = Some((number, build));
+    sway.building = Some((number, spawn_work(move || WindResponse::new(field, &wanted))));
 }
 
 /// Takes over tables that have been built, and releases their wind.
@@ -128,8 +127,16 @@ pub(super) fn finish_tables(mut wind: ResMut<ActiveWind>, mut sway: ResMut<Activ
     if let Some((number, task)) = &mut sway.building
         && let Some(built) = block_on(poll_once(task))
     {
-        sway.incoming = Some(NumberedResponse { number: *number, response: Arc::new(built) });
-        sway.is_released = !sway.holds_incoming;
+        match built {
+            Ok(built) => {
+                sway.incoming = Some(NumberedResponse { number: *number, response: Arc::new(built) });
+                sway.is_released = !sway.holds_incoming;
+            }
+            Err(panic) => {
+                error!("sway: {panic}; the last good wind stays in force");
+                wind.bypass_change_detection().refuse_incoming(*number);
+            }
+        }
         sway.building = None;
     }
     if let Some(tables) = sway.incoming.take_if(|_| sway.is_released) {

@@ -61,7 +61,7 @@ mod wood_mesh;
 pub(crate) use bounds::PressureStep;
 pub use bounds::SwayBounds;
 pub use components::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Tree, TreeBeams, TreeLeaves};
-pub(crate) use ecs::missing_species::ReportedSpecies;
+pub(crate) use ecs::{missing_species::ReportedSpecies, species_models::no_longer_used};
 pub use ecs::{
     season::Season,
     species_models::{BakedSpecies, BakedStage, SpeciesBaked, SpeciesModels, bake_variants},

@@ -1,6 +1,7 @@
 //! The impostor atlas of each species that grows in a forest, baked in the background.
 
 use crate::{
+    background::{Work, spawn_work},
     forest::cells::ForestCells,
     lod::{ImpostorAtlas, ImpostorSettings, ImpostorSway, Scene},
     render::{
@@ -13,20 +14,22 @@ use crate::{
         lighting::{LitAsTrees, TreeLights},
         settings::ActiveLevelOfDetail,
     },
-    tree::{Species, TreeModel, bake_variants, growth::age::Age, textures::species_textures},
+    tree::{Species, TreeModel, bake_variants, growth::age::Age, no_longer_used, textures::species_textures},
 };
 use bevy::{
     asset::LoadState,
-    platform::collections::HashMap,
+    platform::collections::{HashMap, HashSet},
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 
 /// The species of which there are impostors.
 #[derive(Resource, Default)]
 pub(super) struct ImpostorSpeciesLibrary {
     species: HashMap<AssetId<Species>, ImpostorSpecies>,
-    baking: Vec<(AssetId<Species>, Task<Baked>)>,
+    baking: Vec<(AssetId<Species>, Work<Baked>)>,
+    /// Those that have no atlas, since its worker has panicked.
+    failed: HashSet<AssetId<Species>>,
     /// What they are baked with.
     settings: ImpostorSettings,
     /// Whether the device reads compressed textures.
@@ -55,26 +58,29 @@ impl ImpostorSpeciesLibrary {
         self.species.get(&id)
     }
 
-    /// Whether its atlas is baked, or the species cannot be loaded.
+    /// Whether its atlas is baked, or cannot be, or the species cannot be loaded.
     pub fn is_settled(&self, species: &Handle<Species>, assets: &AssetServer) -> bool {
-        self.species.contains_key(&species.id()) || matches!(assets.get_load_state(species), Some(LoadState::Failed(_)))
+        self.species.contains_key(&species.id())
+            || self.failed.contains(&species.id())
+            || matches!(assets.get_load_state(species), Some(LoadState::Failed(_)))
     }
 
-    /// Whether its atlas is baked or being baked.
+    /// Whether its atlas is baked or being baked, or cannot be.
     fn is_known(&self, id: AssetId<Species>) -> bool {
-        self.species.contains_key(&id) || self.baking.iter().any(|(other, _)| *other == id)
+        self.species.contains_key(&id) || self.failed.contains(&id) || self.baking.iter().any(|(other, _)| *other == id)
     }
 
     fn remove(&mut self, id: AssetId<Species>) {
         self.species.remove(&id);
+        self.failed.remove(&id);
         self.baking.retain(|(other, _)| *other != id);
     }
 
     fn bake(&mut self, id: AssetId<Species>, species: &Species) {
         let (species, settings, compresses) = (species.clone(), self.settings, self.compresses_textures);
         self.baking.retain(|(other, _)| *other != id);
-        let task = AsyncComputeTaskPool::get().spawn(async move { bake(species, &settings, compresses) });
-        self.baking.push((id, task));
+        self.failed.remove(&id);
+        self.baking.push((id, spawn_work(move || bake(species, &settings, compresses))));
     }
 
     /// Takes settings over. Returns the species that have to be baked anew with them.
@@ -132,8 +138,7 @@ pub(super) fn bake_impostor_species(
                     library.bake(*id, species);
                 }
             }
-            AssetEvent::Removed { id } => library.remove(*id),
-            _ => {}
+            _ => no_longer_used(event).into_iter().for_each(|id| library.remove(id)),
         }
     }
     for handle in forests.iter().flat_map(ForestCells::species) {
@@ -143,9 +148,18 @@ pub(super) fn bake_impostor_species(
             library.bake(id, species);
         }
     }
-    let ImpostorSpeciesLibrary { species: baked, baking, .. } = &mut *library;
+    let ImpostorSpeciesLibrary { species: baked, baking, failed, .. } = &mut *library;
     baking.retain_mut(|(id, task)| {
-        let Some(Baked { species, atlas }) = block_on(poll_once(task)) else { return true };
+        let Some(made) = block_on(poll_once(task)) else { return true };
+        let Baked { species, atlas } = match made {
+            Ok(made) => made,
+            Err(panic) => {
+                let name = species.get(*id).map_or("unknown", |species| species.name.as_str());
+                error!("species `{name}`: {panic}; its last good impostors stay");
+                failed.insert(*id);
+                return false;
+            }
+        };
         let (frame, shown_variants) = (atlas.frame, atlas.variants);
         let mut material = impostor_material(&species, atlas, &mut images, &buffers, near_masks.buffer.clone());
         *material.extension.lights_mut() = *lights;

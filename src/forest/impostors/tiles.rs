@@ -5,6 +5,7 @@ use super::{
     tile_mesh::{ImpostorShape, TileMesh, tile_meshes},
 };
 use crate::{
+    background::{Work, spawn_work},
     forest::{cells::ForestCells, stand::Stand},
     render::{
         RenderCapabilities,
@@ -19,7 +20,7 @@ use bevy::{
     math::DVec2,
     platform::collections::{HashMap, HashSet},
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 use std::sync::Arc;
 
@@ -32,7 +33,7 @@ pub struct ForestImpostors {
     cells: i32,
     /// How many of the forest's species they lack, which cannot be loaded.
     lacking_species: usize,
-    making: Vec<(IVec2, Task<MadeTile>)>,
+    making: Vec<(IVec2, Work<MadeTile>)>,
     tiles: HashMap<IVec2, Tile>,
     is_complete: bool,
     /// The near cells that are marked in the masks of the tiles, and what these were last written for.
@@ -229,7 +230,7 @@ impl ForestImpostors {
         for (place, planted) in forest.take_tiles_for_impostors(room) {
             let (shapes, stand, corner) =
                 (shapes.clone(), stand.clone(), forest.planter().corner_m(place * self.cells));
-            let task = AsyncComputeTaskPool::get().spawn(async move {
+            let task = spawn_work(move || {
                 (tile_meshes(&planted, corner.as_vec2(), &shapes), block_canopies(&stand, corner, tile_m))
             });
             // What was planted before is out of date.
@@ -249,7 +250,11 @@ impl ForestImpostors {
     ) {
         let Self { making, tiles, cells, marked, .. } = self;
         making.retain_mut(|(place, task)| {
-            let Some((made, canopies)) = block_on(poll_once(task)) else { return true };
+            let Some(made) = block_on(poll_once(task)) else { return true };
+            let (made, canopies) = made.unwrap_or_else(|panic| {
+                error_once!("forest: {panic}; there are no impostors where its workers do");
+                Default::default()
+            });
             if !forest.has_tile(*place) {
                 return false;
             }

@@ -8,17 +8,18 @@ use super::{
     materials::{MaterialAssets, SpeciesMaterials},
 };
 use crate::{
+    background::{Work, spawn_work},
     lod::LodBakeSettings,
     render::{
         settings::{ActiveLevelOfDetail, LevelStyle},
         wind_exposure::WindExposure,
     },
-    tree::{Species, SpeciesBaked, SpeciesModels, TreeModel},
+    tree::{Species, SpeciesBaked, SpeciesModels, TreeModel, no_longer_used},
 };
 use bevy::{
     ecs::system::SystemParam,
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 use std::collections::VecDeque;
 
@@ -37,7 +38,7 @@ struct Preparation {
     species: AssetId<Species>,
     age_step: i32,
     generation: u64,
-    task: Task<SpeciesMeshes>,
+    task: Work<SpeciesMeshes>,
 }
 
 /// Starts preparing species that were baked, or all of them when the settings of their levels have changed, one a frame.
@@ -66,12 +67,11 @@ pub(crate) fn start_preparing_species(
     running.retain(|other| (other.species, other.age_step) != (id, age_step));
     let has_images = library.species.get(&id).is_some_and(|prepared| prepared.generation == generation)
         || running.iter().any(|other| (other.species, other.generation) == (id, generation));
-    let task =
-        AsyncComputeTaskPool::get().spawn(async move { species_meshes(&species, !has_images, variants, style, &bake) });
+    let task = spawn_work(move || species_meshes(&species, !has_images, variants, style, &bake));
     running.push(Preparation { species: id, age_step, generation, task });
 }
 
-/// Forgets species whose asset is gone.
+/// Forgets species that nobody has any longer.
 pub(crate) fn remove_prepared_species(
     mut events: MessageReader<AssetEvent<Species>>,
     mut queue: ResMut<PreparationQueue>,
@@ -79,9 +79,9 @@ pub(crate) fn remove_prepared_species(
     mut removed: MessageWriter<VariantRemoved>,
 ) {
     for event in events.read() {
-        if let AssetEvent::Removed { id } = event {
-            queue.running.retain(|other| other.species != *id);
-            let prepared = library.species.remove(id);
+        if let Some(id) = no_longer_used(event) {
+            queue.running.retain(|other| other.species != id);
+            let prepared = library.species.remove(&id);
             removed.write_batch(prepared.into_iter().flat_map(|it| it.variants.into_keys()).map(VariantRemoved));
         }
     }
@@ -113,6 +113,13 @@ pub(crate) fn finish_preparing_species(
     let Preparation { species, age_step, generation, mut task } = queue.running.remove(number);
     let Some(meshes) = block_on(poll_once(&mut task)) else { return };
     let Some(entry) = species_models.get(species) else { return };
+    let meshes = match meshes {
+        Ok(meshes) => meshes,
+        Err(panic) => {
+            error!("species `{}`: {panic}; its last good meshes stay", entry.species.name);
+            return;
+        }
+    };
     let Some(stage) = entry.stages.get(&age_step).filter(|stage| stage.generation == generation) else { return };
     if let Some(images) = meshes.images {
         let materials = assets.materials.add_species(&entry.species, images);
@@ -185,7 +192,11 @@ mod tests {
     fn prepared_levels((app, system): &mut (App, SystemId)) -> Vec<usize> {
         app.world_mut().run_system(*system).expect("it runs");
         let running = std::mem::take(&mut app.world_mut().resource_mut::<PreparationQueue>().running);
-        running.into_iter().flat_map(|it| block_on(it.task).variants).map(|variant| variant.lods.len()).collect()
+        running
+            .into_iter()
+            .flat_map(|it| block_on(it.task).expect("no panic").variants)
+            .map(|variant| variant.lods.len())
+            .collect()
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Builds the ground about the viewers in the background, and shows it.
 
 use crate::{
+    background::{Work, spawn_work},
     setting::valid_or_last,
     terrain::{
         chunk::{ChunkVertices, chunk_vertices},
@@ -17,7 +18,7 @@ use bevy::{
     mesh::{Indices, MeshTag, PrimitiveTopology},
     platform::collections::HashMap,
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 
 /// The chunks of a [`Terrain`].
@@ -27,13 +28,15 @@ pub struct TerrainChunks {
     /// Settings in force: the last that were valid.
     settings: TerrainSettings,
     material: Handle<GroundMaterial>,
-    building: Vec<(ChunkKey, Task<Built>)>,
+    building: Vec<(ChunkKey, Work<Built>)>,
     chunks: HashMap<ChunkKey, Entity>,
     /// Chunks that were spawned in the last frame: only now can they be shown, and coarser ones be hidden.
     arrived: Vec<ChunkKey>,
     eyes: Vec<Eye>,
     selected_from: Vec<Eye>,
     is_complete: bool,
+    /// Whether it was told that a worker has panicked.
+    has_told: bool,
 }
 
 struct Built {
@@ -87,6 +90,7 @@ pub(in crate::terrain) fn begin_terrains(
             eyes: Vec::new(),
             selected_from: Vec::new(),
             is_complete: false,
+            has_told: false,
         });
     }
 }
@@ -164,11 +168,22 @@ impl TerrainChunks {
     /// Spawns chunks that are built, as many as a frame may.
     fn spawn_built(&mut self, terrain: Entity, commands: &mut Commands, meshes: &mut Assets<Mesh>) {
         let mut room = self.settings.chunks_per_frame;
-        let Self { building, pyramid, chunks, arrived, material, settings, .. } = self;
+        let Self { building, pyramid, chunks, arrived, material, settings, has_told, .. } = self;
         building.retain_mut(|(key, task)| {
             let built = if room > 0 { block_on(poll_once(task)) } else { None };
             let Some(built) = built else { return true };
             room -= 1;
+            let built = match built {
+                Ok(built) => built,
+                Err(panic) => {
+                    if !std::mem::replace(has_told, true) {
+                        error!("terrain {terrain}: {panic}; no ground is drawn where its workers do");
+                    }
+                    // Nothing is drawn there, and it is not built again.
+                    arrived.push(*key);
+                    return false;
+                }
+            };
             if pyramid.awaits(*key) {
                 let corner = key.corner_m(f64::from(settings.finest_cell_m)).as_vec2();
                 let chunk = commands.spawn((
@@ -194,7 +209,7 @@ impl TerrainChunks {
         while self.building.len() < self.settings.builds_at_once as usize {
             let Some(key) = self.pyramid.next_to_build() else { break };
             let (terrain, cell_m) = (terrain.clone(), f64::from(self.settings.finest_cell_m));
-            let task = AsyncComputeTaskPool::get().spawn(async move {
+            let task = spawn_work(move || {
                 let vertices = chunk_vertices(&terrain.ground, terrain.cover.as_deref(), key, cell_m);
                 let side_m = key.side_m(cell_m) as f32;
                 let bounds = Aabb::from_min_max(

@@ -3,11 +3,14 @@
 //! Trees of a species share models: one for each variant at each step of age. Only the steps that trees ask for are
 //! baked.
 
-use crate::tree::{growth::age::Age, model::TreeModel, species::Species};
+use crate::{
+    background::{Work, spawn_work},
+    tree::{growth::age::Age, model::TreeModel, species::Species},
+};
 use bevy::{
     platform::collections::HashMap,
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 use rand::{Rng, SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::collections::BTreeMap;
@@ -16,7 +19,8 @@ use std::collections::BTreeMap;
 /// trees of one age differ.
 const AGE_STEP: f32 = 1.35;
 
-/// The species that are baked. An entry lives as long as its species asset.
+/// The species that are baked. An entry lives as long as anyone has a handle of its species: one whose asset is removed before that stays as
+/// it last was.
 #[derive(Resource, Default)]
 pub struct SpeciesModels {
     species: HashMap<AssetId<Species>, BakedSpecies>,
@@ -36,7 +40,7 @@ pub struct BakedSpecies {
 
 /// The models of a species at one age.
 pub struct BakedStage {
-    /// One model a variant.
+    /// One model a variant; none where a worker has panicked over the first.
     pub models: Vec<Handle<TreeModel>>,
     /// Which of the species' generations they are of; older ones stay until newer are baked.
     pub generation: u64,
@@ -46,7 +50,7 @@ struct Baking {
     id: AssetId<Species>,
     step: i32,
     generation: u64,
-    task: Task<Vec<TreeModel>>,
+    task: Work<Vec<TreeModel>>,
 }
 
 impl SpeciesModels {
@@ -58,7 +62,8 @@ impl SpeciesModels {
     /// Every species with every age that is baked.
     #[cfg(feature = "render")]
     pub(crate) fn stages(&self) -> impl Iterator<Item = (AssetId<Species>, i32)> + '_ {
-        self.species.iter().flat_map(|(id, entry)| entry.stages.keys().map(|step| (*id, *step)))
+        let baked = |(step, stage): (&i32, &BakedStage)| (!stage.models.is_empty()).then_some(*step);
+        self.species.iter().flat_map(move |(id, entry)| entry.stages.iter().filter_map(baked).map(|step| (*id, step)))
     }
 
     /// Whether species are being baked.
@@ -98,8 +103,7 @@ impl SpeciesModels {
             return;
         }
         let species = entry.species.clone();
-        let task = AsyncComputeTaskPool::get()
-            .spawn(async move { bake_variants(&species, age_of_step(&species.age, step)).collect() });
+        let task = spawn_work(move || bake_variants(&species, age_of_step(&species.age, step)).collect());
         self.baking.push(Baking { id, step, generation, task });
     }
 }
@@ -124,13 +128,26 @@ pub struct SpeciesBaked {
     pub step: i32,
 }
 
-/// Inserts every species that was loaded or changed, and removes those whose asset is gone.
+/// The species of which nobody has a handle any more, if an event tells of one. An id that is a constant is nobody's: it is used no longer
+/// when its asset is removed.
+pub(crate) fn no_longer_used(event: &AssetEvent<Species>) -> Option<AssetId<Species>> {
+    match *event {
+        AssetEvent::Unused { id } | AssetEvent::Removed { id: id @ AssetId::Uuid { .. } } => Some(id),
+        _ => None,
+    }
+}
+
+/// Inserts every species that was loaded or changed, and removes those that nobody has any longer.
 pub(in crate::tree) fn update_species(
     mut events: MessageReader<AssetEvent<Species>>,
     species: Res<Assets<Species>>,
     mut baked_species: ResMut<SpeciesModels>,
 ) {
     for event in events.read() {
+        if let Some(id) = no_longer_used(event) {
+            baked_species.baking.retain(|baking| baking.id != id);
+            baked_species.species.remove(&id);
+        }
         match *event {
             AssetEvent::Added { id } | AssetEvent::Modified { id } => {
                 let Some(species) = species.get(id).cloned() else { continue };
@@ -140,8 +157,9 @@ pub(in crate::tree) fn update_species(
                 }
             }
             AssetEvent::Removed { id } => {
-                baked_species.baking.retain(|baking| baking.id != id);
-                baked_species.species.remove(&id);
+                if let Some(entry) = baked_species.get(id) {
+                    warn!("species `{}` was removed and is still in use; it stays as it was", entry.species.name);
+                }
             }
             AssetEvent::Unused { .. } | AssetEvent::LoadedWithDependencies { .. } => {}
         }
@@ -167,10 +185,19 @@ pub(crate) fn store_baked_models(
     let SpeciesModels { species, baking, .. } = &mut *baked_species;
     baking.retain_mut(|Baking { id, step, generation, task }| {
         let Some(variants) = block_on(poll_once(task)) else { return true };
-        if let Some(entry) = species.get_mut(id) {
-            let models = variants.into_iter().map(|model| models.add(model)).collect();
-            entry.stages.insert(*step, BakedStage { models, generation: *generation });
-            baked.write(SpeciesBaked { species: *id, step: *step });
+        let Some(entry) = species.get_mut(id) else { return false };
+        match variants {
+            Ok(variants) => {
+                let models = variants.into_iter().map(|model| models.add(model)).collect();
+                entry.stages.insert(*step, BakedStage { models, generation: *generation });
+                baked.write(SpeciesBaked { species: *id, step: *step });
+            }
+            Err(panic) => {
+                error!("species `{}`: {panic}; its last good models stay", entry.species.name);
+                // It would panic again: nobody asks for this generation any more.
+                let before = entry.stages.remove(step).map(|before| before.models).unwrap_or_default();
+                entry.stages.insert(*step, BakedStage { models: before, generation: *generation });
+            }
         }
         false
     });
@@ -179,6 +206,42 @@ pub(crate) fn store_baked_models(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tree::{
+        Grown, Tree,
+        ecs::test_app::{app, wait},
+    };
+
+    /// A tree of a species whose next version makes a worker panic, and the one after that is good again.
+    #[test]
+    fn where_a_worker_panics_the_last_good_models_stay() {
+        let mut app = app();
+        let young = Species { variants: 1, ..Species::default() };
+        let species = app.world_mut().resource_mut::<Assets<Species>>().add(young.clone());
+        let tree = app.world_mut().spawn(Tree::new(species.clone()).with_age(Age::YOUNGEST_YEARS)).id();
+        let model = |world: &mut World| world.get::<Grown>(tree).map(|grown| grown.model.id());
+        assert!(wait(&mut app, |world| model(world).is_some()));
+        let before = model(app.world_mut());
+
+        let mut models = app.world_mut().resource_mut::<SpeciesModels>();
+        models.bakes += 1;
+        let generation = models.bakes;
+        let entry = models.species.get_mut(&species.id()).expect("it is baked");
+        entry.generation = generation;
+        let step = *entry.stages.keys().next().expect("it is baked at one age");
+        let task = spawn_work(|| panic!("a generator has a mistake"));
+        models.baking.push(Baking { id: species.id(), step, generation, task });
+        assert!(wait(&mut app, |world| !world.resource::<SpeciesModels>().is_baking()));
+        // Trees that come later get the last good models, too, and nobody has it baked again.
+        let later = app.world_mut().spawn(Tree::new(species.clone()).with_age(Age::YOUNGEST_YEARS)).id();
+        (0..20).for_each(|_| app.update());
+        assert_eq!(model(app.world_mut()), before);
+        assert_eq!(app.world().get::<Grown>(later).map(|grown| grown.model.id()), before);
+        assert!(!app.world().resource::<SpeciesModels>().is_baking());
+
+        let good = Species { seed: 9, ..young };
+        app.world_mut().resource_mut::<Assets<Species>>().insert(&species, good).expect("the handle lives");
+        assert!(wait(&mut app, |world| model(world) != before));
+    }
 
     #[test]
     fn ages_are_rounded_by_less_than_a_sixth() {

@@ -4,7 +4,7 @@
 //! until it is there ([`ActiveWind::hold_incoming`]), knows it by its number, and follows [`ActiveWind::transition`].
 
 use crate::{
-    background::drop_in_background,
+    background::{Work, drop_in_background, spawn_work},
     setting::SettingError,
     wind::{
         cross_fade::{CrossFade, FadeStep},
@@ -14,7 +14,7 @@ use crate::{
 };
 use bevy::{
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 use std::sync::Arc;
 
@@ -77,7 +77,7 @@ pub(crate) struct NumberedWind {
 #[derive(Resource, Default)]
 pub struct ActiveWind {
     winds: Option<CrossFade<NumberedWind>>,
-    build: Option<Task<Result<WindField, SettingError>>>,
+    build: Option<Work<Result<WindField, SettingError>>>,
     requested: Option<FieldSettings>,
     /// A wind that is built, until it begins.
     incoming: Option<NumberedWind>,
@@ -133,6 +133,11 @@ impl ActiveWind {
         self.is_released |= self.incoming.as_ref().is_some_and(|wind| wind.number == number);
     }
 
+    /// Forgets the wind of that number, if it waits: what belongs to it cannot be prepared.
+    pub(crate) fn refuse_incoming(&mut self, number: u64) {
+        self.incoming.take_if(|wind| wind.number == number).into_iter().for_each(drop_in_background);
+    }
+
     /// Lets the newest field come in once more, as another wind, where none is built and none waits: what belongs to it is to be
     /// prepared anew.
     pub(crate) fn repeat_newest(&mut self) {
@@ -186,7 +191,7 @@ pub(in crate::wind) fn start_field_build(wind: Res<Wind>, mut active: ResMut<Act
         return;
     }
     active.requested = Some(settings.clone());
-    active.build = Some(AsyncComputeTaskPool::get().spawn(async move { WindField::synthesise(&settings) }));
+    active.build = Some(spawn_work(move || WindField::synthesise(&settings)));
 }
 
 /// Takes over a field that has been built, at once or when it is released.
@@ -199,11 +204,12 @@ pub(in crate::wind) fn finish_field_build(wind: Res<Wind>, mut active: ResMut<Ac
     let Some(built) = block_on(poll_once(build)) else { return };
     active.build = None;
     match built {
-        Ok(field) => {
+        Ok(Ok(field)) => {
             active.announce(Arc::new(field));
             active.take_incoming(wind.fade_s);
         }
-        Err(error) => warn!("wind: {error}; the last good wind stays in force"),
+        Ok(Err(error)) => warn!("wind: {error}; the last good wind stays in force"),
+        Err(panic) => error!("wind: {panic}; the last good wind stays in force"),
     }
 }
 

@@ -1,12 +1,24 @@
-//! The experiment of figure 9 of Setas et al. to fly through: flat ground, some number of trees, and two techniques, the
-//! voxel grid (key V) and levels of detail (key L), that can be switched while the frame rate is shown.
+//! Lesson 9: figure 9, an experiment to fly through.
 //!
-//! Without a display, or with `--headless`, it writes pictures along the path instead. `cargo run --example validate --
-//! figure9` measures the curves of the figure.
+//! Setas, Gomes and Rebordao (1997) walked for three minutes through ever more trees on flat ground, and plotted the frame rate: with neither,
+//! either, or both of two techniques. The first is a voxel grid: only cells that are in view are drawn. The second is levels of detail: a tree
+//! that is small on the picture is drawn with less. This is their walk. V and L switch the techniques, as you go.
+//!
+//! Both are resources here, and a game need not touch them. `ForestCulling` is the grid: cells that no camera sees, and whose shadows fall
+//! out of view, are hidden. `LevelOfDetail` says at which size on the picture a tree changes to its next level, and of which style the levels
+//! are: thinned trees and impostors, or the paper's envelope of leaves and four polygons (`--paper-levels`). G draws the cells and the levels
+//! as lines.
+//!
+//! What to look for: with a hundred trees it makes no difference, with ten thousand the picture stands still without levels. The grid alone
+//! helps as much as the part of the wood that is behind you, and no more. The same curves, measured: `docs/figure9.png`, by `cargo run
+//! --example validate -- figure9`.
+//!
+//! Without a display, or with `--headless`, pictures along the path are written. The walk itself is in `tools/support/walk.rs`, which the
+//! measurement shares.
 
-#[path = "../../examples/support/mod.rs"]
+#[path = "../support/mod.rs"]
 mod support;
-#[path = "../support/walk.rs"]
+#[path = "../../tools/support/walk.rs"]
 mod walk;
 
 use bevy::{
@@ -81,7 +93,7 @@ fn render_pictures(options: &Options, technique: Technique) -> Result<(), String
         }
         walk::settle(&mut app, 500)?;
         let picture = capture::capture(&mut app, &target, options.image.size)?;
-        let path = options.out.join(format!("figure9_{frame:03}.png"));
+        let path = options.out.join(format!("09_figure_9_{frame:03}.png"));
         capture::save(&picture, &path)?;
         println!("{}", path.display());
     }

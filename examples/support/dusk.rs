@@ -1,6 +1,6 @@
 //! The light of dusk.
 
-use crate::support::sky;
+use super::sky;
 use bevy::{
     camera::{Exposure, Hdr},
     light::CascadeShadowConfigBuilder,

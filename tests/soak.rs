@@ -1,0 +1,91 @@
+//! A game that goes on and on: it walks, teleports, fells, plants, changes the wind, lets trees come and go, all at random. Every minute of its
+//! time it goes home, puts everything away. (It draws in the beginning alone: docs/trust.md says why.) What is there then must be what was there before: entities, handles, memory, buffers
+//! on the GPU. Needs a Vulkan driver. Mesa's software one will do.
+//!
+//! ```sh
+//! cargo test --test soak -- --ignored --nocapture        # an hour of the game's time
+//! SOAK_MINUTES=10 cargo test --test soak -- --ignored    # another time
+//! ```
+
+#[path = "soak/census.rs"]
+mod census;
+#[path = "soak/game.rs"]
+mod game;
+mod support;
+
+use census::Census;
+use game::Game;
+
+/// What a minute is in the short run, s of the game's time.
+const SHORT_MINUTE_S: f32 = 8.0;
+/// Of the minutes, the first so many fill caches: of pipelines, of allocators, of levels of detail.
+const WARM_UP_MINUTES: usize = 2;
+
+/// Plays so many minutes, and counts after each.
+fn play(minutes: usize, minute_s: f32) -> Vec<Census> {
+    let mut game = Game::new(7);
+    let counts = |minute: usize| {
+        game.play(minute_s);
+        game.go_home();
+        let census = Census::take(&mut game.app);
+        println!("minute {minute}: {census:?}");
+        census
+    };
+    (0..minutes).map(counts).collect()
+}
+
+/// Of a straight line through values at minutes 0, 1, 2 and so on (least squares), per minute.
+fn slope(values: &[f64]) -> f64 {
+    let count = values.len() as f64;
+    let (mean_at, mean) = (0.5 * (count - 1.0), values.iter().sum::<f64>() / count);
+    let moments = values.iter().enumerate().map(|(at, value)| {
+        let from_mean = at as f64 - mean_at;
+        [from_mean * (value - mean), from_mean * from_mean]
+    });
+    let [covariance, variance] = moments.fold([0.0; 2], |sum, it| [sum[0] + it[0], sum[1] + it[1]]);
+    covariance / variance
+}
+
+/// What is counted is in the end what it was, and never more than a hundredth off. Memory has allocators below it, which keep what they get:
+/// it must not grow by more than so much a minute.
+fn assert_flat(censuses: &[Census], [most_resident, most_gpu]: [f64; 2]) {
+    let first = &censuses[0];
+    for (minute, census) in censuses.iter().enumerate() {
+        for (what, count) in &census.counts {
+            let before = first.counts[what];
+            assert!(
+                count.abs_diff(before) * 100 <= before,
+                "{count} {what} in minute {minute} after the warm-up, and {before} before"
+            );
+        }
+    }
+    assert_eq!(censuses.last().map(|last| &last.counts), Some(&first.counts));
+    let resident: Vec<f64> = censuses.iter().map(|census| census.resident_bytes as f64).collect();
+    let gpu: Vec<f64> = censuses.iter().map(|census| census.gpu_bytes as f64).collect();
+    let [resident, gpu] = [resident, gpu].map(|values| slope(&values));
+    println!("slopes: resident memory {resident:.0} B/min, GPU {gpu:.0} B/min");
+    assert!(resident < most_resident, "resident memory grows by {resident} B/min");
+    assert!(gpu < most_gpu, "GPU memory grows by {gpu} B/min");
+}
+
+#[test]
+fn a_game_that_goes_home_has_what_it_had() {
+    let censuses = play(WARM_UP_MINUTES + 4, SHORT_MINUTE_S);
+    // Over so short a time there are the steps of allocators in it: the long run is stricter.
+    assert_flat(&censuses[WARM_UP_MINUTES..], [1e6, 100e3]);
+}
+
+#[test]
+#[ignore = "a long run: an hour of the game's time, a quarter of an hour"]
+fn an_hour_leaves_nothing_behind() {
+    let minutes = std::env::var("SOAK_MINUTES").ok().and_then(|text| text.parse().ok()).unwrap_or(60);
+    let censuses = play(minutes, 60.0);
+    assert_flat(&censuses[minutes / 4..], [500e3, 50e3]);
+}
+
+#[test]
+fn the_slope_of_a_line_is_its_slope() {
+    let line: Vec<f64> = (0..10).map(|at| 5.0 - 3.0 * f64::from(at)).collect();
+    assert!((slope(&line) + 3.0).abs() < 1e-12);
+    assert_eq!(slope(&[4.0; 7]), 0.0);
+}
