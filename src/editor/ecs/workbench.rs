@@ -5,16 +5,27 @@ use std::path::{Path, PathBuf};
 use crate::{
     editor::{
         costs::Costs,
+        document::Document,
         fields::Section,
+        file_session::FileSession,
+        ground_desk::{GroundDesk, GroundKind},
+        ground_variogram::GroundVariogram,
+        land_pose::LandPose,
+        plan_element::Element,
+        quadrat_histogram::QuadratHistogram,
+        scene_view::SceneView,
         session::Session,
         stage::Stage,
         tip_motion::TipMotion,
-        ui::{self, LevelTables, Panel, Subjects, TreeFacts, UiState, WindFacts, wind_table},
+        ui::{self, GroundFacts, LevelTables, Panel, Subjects, TreeFacts, UiState, WindFacts, WoodsFacts, wind_table},
         wind_measures::WindMeasures,
+        woods::Woods,
     },
     forest::ForestSettings,
     render::LevelOfDetail,
+    scatter::ForestPlan,
     sway::ActiveSway,
+    terrain::{SplineGroundSettings, TurningBandsSettings},
     tree::{Season, Species},
     wind::{ActiveWind, Wind},
 };
@@ -35,7 +46,12 @@ pub struct Workbench {
     pub stage: Stage,
     /// Whether levels, streaming and culling stay as they are, while the camera goes elsewhere.
     pub is_frozen: bool,
-    pub(super) session: Session,
+    pub(super) session: Session<Species>,
+    pub(super) woods: Woods,
+    pub(super) ground: GroundDesk,
+    /// From where a wood or ground is looked at, on the turntable.
+    pub(super) pose: LandPose,
+    pub(super) land: LandFacts,
     ui: UiState,
     /// The assets that show the species as it is edited, and as it is in its file.
     pub(super) shown: Handle<Species>,
@@ -54,21 +70,49 @@ pub struct Workbench {
     level_tables: LevelTables,
 }
 
+/// What is known of the wood and the ground that are shown.
+#[derive(Default)]
+pub(super) struct LandFacts {
+    /// The picture, if there is one.
+    pub view: Option<SceneView>,
+    pub histogram: Option<Result<QuadratHistogram, String>>,
+    pub stems: usize,
+    pub is_growing: bool,
+    pub variogram: Option<GroundVariogram>,
+    pub is_building: bool,
+}
+
+/// The session of a file; of a new one where it cannot be read.
+fn session_of<T: Document>(path: Option<&Path>, new: T) -> Session<T> {
+    let Some(path) = path else { return Session::new(&PathBuf::from(format!("new{}", T::EXTENSION)), new) };
+    Session::open(path).unwrap_or_else(|error| {
+        warn!("workbench: {error}; a new {} is begun", T::NAME);
+        Session::new(path, new)
+    })
+}
+
 impl Workbench {
-    /// A workbench with a species from a file; with the default species, if the file cannot be read.
-    pub(super) fn new(path: Option<&Path>, has_turntable: bool) -> Self {
-        let path = path.map_or_else(|| PathBuf::from("new.species.ron"), Path::to_owned);
-        let new = || Session::new(&path, Species { name: "new".into(), ..Species::default() });
-        let session = Session::open(&path).unwrap_or_else(|error| {
-            warn!("workbench: {error}; a new species is begun");
-            new()
-        });
+    /// A workbench with files; with new ones, where they cannot be read. `ground` is of either kind.
+    pub(super) fn new(species: Option<&Path>, plan: Option<&Path>, ground: Option<&Path>, has_turntable: bool) -> Self {
+        let session = session_of(species, Species { name: "new".into(), ..Species::default() });
+        let is_spline = |path: &&Path| path.to_string_lossy().ends_with(<SplineGroundSettings as Document>::EXTENSION);
+        let random = session_of(ground.filter(|path| !is_spline(path)), TurningBandsSettings::default());
+        let spline = session_of(ground.filter(is_spline), SplineGroundSettings::default());
+        let mut ground_desk = GroundDesk::new(random, spline);
+        ground_desk.is_shown = has_turntable;
+        if ground.is_some_and(|path| is_spline(&path)) {
+            ground_desk.kind = GroundKind::Spline;
+        }
         Self {
             is_open: false,
             panel: Panel::default(),
             stage: Stage::default(),
             is_frozen: false,
             session,
+            woods: Woods::new(session_of(plan, ForestPlan::default())),
+            ground: ground_desk,
+            pose: LandPose::default(),
+            land: LandFacts::default(),
             ui: UiState::default(),
             shown: Handle::default(),
             saved: Handle::default(),
@@ -91,9 +135,59 @@ impl Workbench {
         self.session.open_another(path);
     }
 
+    /// Opens the plan of a forest; asks first where changes would be lost.
+    pub fn open_plan(&mut self, path: &Path) {
+        self.woods.session.open_another(path);
+        self.show_whole_plan();
+    }
+
+    /// Opens ground of either kind, by the ending of its file; asks first where changes would be lost.
+    pub fn open_ground(&mut self, path: &Path) {
+        self.ground.open(path);
+    }
+
+    /// Looks at the whole plan from above, at an angle over the level, degrees.
+    pub fn look_at_plan(&mut self, rise_deg: f32) {
+        self.show_whole_plan();
+        self.look_at_place(self.pose.middle, self.pose.distance_m, rise_deg);
+    }
+
+    /// Looks at a place (x, z), m, from a distance, m, at an angle over the level, degrees.
+    pub fn look_at_place(&mut self, place: Vec2, distance_m: f32, rise_deg: f32) {
+        self.pose = LandPose { middle: place, distance_m, rise_rad: rise_deg.to_radians(), ..self.pose };
+    }
+
+    fn show_whole_plan(&mut self) {
+        let plan = self.woods.plan();
+        self.pose.show(Element::all(plan).flat_map(|element| element.handles(plan)).collect::<Vec<_>>());
+    }
+
+    /// Everything that has a file.
+    pub(super) fn files(&mut self) -> [(Panel, &mut dyn FileSession); 4] {
+        [
+            (Panel::Species, &mut self.session as &mut dyn FileSession),
+            (Panel::Woods, &mut self.woods.session),
+            (Panel::Ground, &mut self.ground.random),
+            (Panel::Ground, &mut self.ground.spline),
+        ]
+    }
+
+    /// Whether the program may end: else the first file with unsaved changes is shown, and asked about.
+    pub(super) fn may_quit(&mut self) -> bool {
+        let asks = self.files().into_iter().position(|(_, files)| !files.may_quit());
+        let Some(number) = asks else { return true };
+        self.panel = [Panel::Species, Panel::Woods, Panel::Ground, Panel::Ground][number];
+        match number {
+            2 => self.ground.kind = GroundKind::Random,
+            3 => self.ground.kind = GroundKind::Spline,
+            _ => {}
+        }
+        false
+    }
+
     /// The species as it is edited.
     pub fn species(&self) -> &Species {
-        self.session.species()
+        self.session.document()
     }
 
     /// Changes the species; `step` is what undoing it is called.
@@ -104,14 +198,24 @@ impl Workbench {
 
     /// Undoes everything.
     pub fn undo_all(&mut self) {
-        while self.session.history().undo_step().is_some() {
-            self.session.undo();
+        for (_, files) in self.files() {
+            while files.undo_step().is_some() {
+                files.undo();
+            }
         }
     }
 
-    /// Whether what is asked for is there: the tree as it is edited, and, in the panel of the wind, what is measured of it.
+    /// Whether what is asked for is there: the tree, the wood or the ground as it is edited, and what is measured of it.
     pub fn is_settled(&self) -> bool {
-        let is_measured = self.panel != Panel::Wind || (self.measures.is_some() && self.tip.is_some());
+        let is_measured = match self.panel {
+            Panel::Wind => self.measures.is_some() && self.tip.is_some(),
+            Panel::Woods => !self.land.is_growing && !self.land.is_building && self.land.histogram.is_some(),
+            Panel::Ground => !self.land.is_building && self.ground.plan().is_some(),
+            Panel::Species | Panel::Levels => true,
+        };
+        if self.panel.is_of_land() {
+            return is_measured && self.land.view.is_some();
+        }
         !self.tree.is_growing && is_measured && self.picture.is_some()
     }
 
@@ -162,6 +266,19 @@ pub(super) fn draw_panels(mut contexts: EguiContexts, mut workbench: ResMut<Work
                 tip: workbench.tip.as_ref(),
                 is_changing: !active_wind.is_settled() || !sway.is_settled(),
             },
+            woods: &mut workbench.woods,
+            woods_facts: WoodsFacts {
+                histogram: workbench.land.histogram.as_ref(),
+                stems: workbench.land.stems,
+                is_growing: workbench.land.is_growing,
+            },
+            ground: &mut workbench.ground,
+            ground_facts: GroundFacts {
+                variogram: workbench.land.variogram.as_ref(),
+                is_building: workbench.land.is_building,
+            },
+            pose: &mut workbench.pose,
+            view: workbench.land.view.as_ref(),
             levels: &mut new_levels,
             forest: new_forest.as_mut(),
             level_tables: &workbench.level_tables,

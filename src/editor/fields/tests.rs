@@ -1,5 +1,6 @@
 use super::*;
 use crate::{
+    editor::{field_table::fields_of, field_text::Unit},
     tree::{Growth, Species, crown::impressionist::ImpressionistCrown, growth::zaharia},
     wind::FieldSettings,
 };
