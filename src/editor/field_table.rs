@@ -225,3 +225,6 @@ fn plain(docs: &str) -> String {
     let text = lines.join(" ").replace("\\[", "\u{1}").replace("\\]", "\u{2}").replace(['[', ']', '`'], "");
     text.replace('\u{1}', "[").replace('\u{2}', "]")
 }
+
+#[cfg(test)]
+mod tests;

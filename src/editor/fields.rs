@@ -140,6 +140,3 @@ pub fn words(name: &str) -> String {
     }
     words
 }
-
-#[cfg(test)]
-mod tests;

@@ -128,14 +128,19 @@ impl SceneView {
 #[cfg(test)]
 pub mod tests {
     use super::*;
-    use bevy::math::Vec3Swizzles;
+    use bevy::{
+        camera::{CameraProjection, PerspectiveProjection},
+        math::Vec3Swizzles,
+        prelude::Transform,
+    };
 
     /// A camera 200 m over a place, that looks down at it aslant.
     pub fn view(ground: impl Ground + 'static, min: Vec2, max: Vec2) -> SceneView {
         let eye = Vec3::new(0.0, 200.0, 150.0);
-        let world_from_view = Mat4::look_at_rh(eye, Vec3::ZERO, Vec3::Y).inverse();
+        let world_from_view = Transform::from_translation(eye).looking_at(Vec3::ZERO, Vec3::Y).to_matrix();
         let aspect = (max.x - min.x) / (max.y - min.y);
-        let clip_from_view = Mat4::perspective_infinite_reverse_rh(0.8, aspect, 0.1);
+        let camera = PerspectiveProjection { aspect_ratio: aspect, fov: 0.8, ..PerspectiveProjection::default() };
+        let clip_from_view = camera.get_clip_from_view();
         let clip_from_world = clip_from_view * world_from_view.inverse();
         SceneView {
             clip_from_world,

@@ -5,6 +5,7 @@ mod land;
 mod manners;
 mod measure;
 mod mesh;
+mod panels;
 mod show_ground;
 mod show_species;
 mod show_woods;
@@ -17,11 +18,12 @@ use self::{
     manners::is_open,
     measure::{Measuring, measure_tip, measure_wind, note_costs, show_arrows},
     mesh::{begin_diagrams, hide_trees, show_diagrams},
+    panels::draw_panels,
     show_ground::{BuiltGround, build_ground, fit_map, raise_ground},
     show_species::{Applied, apply_species, has_species_to_show, note_tree},
     show_woods::{AppliedPlan, apply_plan, count_quadrats, note_woods},
     turntable::{arrange_trees, place_trees, turn},
-    workbench::{Workbench, draw_panels},
+    workbench::Workbench,
 };
 use crate::{plugin_checks::require_plugin, render::TreeRenderPlugin, schedule::WindwoodSystems, timing::timed};
 use bevy::{camera::CameraUpdateSystems, prelude::*};

@@ -1,4 +1,4 @@
-//! The workbench as a resource, and the system that draws its panels.
+//! The workbench as a resource.
 
 use std::path::{Path, PathBuf};
 
@@ -17,23 +17,19 @@ use crate::{
         session::Session,
         stage::Stage,
         tip_motion::TipMotion,
-        ui::{self, GroundFacts, LevelTables, Panel, Subjects, TreeFacts, UiState, WindFacts, WoodsFacts, wind_table},
+        ui::{LevelTables, Panel, TreeFacts, UiState, dialogs::Dialog, wind_table},
         wind_measures::WindMeasures,
         woods::Woods,
     },
     forest::ForestSettings,
     render::LevelOfDetail,
     scatter::ForestPlan,
-    sway::ActiveSway,
     terrain::{SplineGroundSettings, TurningBandsSettings},
-    tree::{Season, Species},
-    wind::{ActiveWind, Wind},
+    tree::Species,
+    wind::Wind,
 };
-use bevy::{ecs::system::SystemParam, prelude::*};
-use bevy_egui::{
-    EguiContexts,
-    egui::{Id, LayerId, Rect, Ui, UiBuilder},
-};
+use bevy::prelude::*;
+use bevy_egui::egui::Rect;
 
 /// The workbench: what is edited, and what is shown of it.
 #[derive(Resource)]
@@ -52,7 +48,7 @@ pub struct Workbench {
     /// From where a wood or ground is looked at, on the turntable.
     pub(super) pose: LandPose,
     pub(super) land: LandFacts,
-    ui: UiState,
+    pub(super) ui: UiState,
     /// The assets that show the species as it is edited, and as it is in its file.
     pub(super) shown: Handle<Species>,
     pub(super) saved: Handle<Species>,
@@ -66,8 +62,8 @@ pub struct Workbench {
     pub(super) is_quitting: bool,
     /// What the panels leave free, in points; and how many pixels a point has.
     pub(super) picture: Option<(Rect, f32)>,
-    wind_table: Section,
-    level_tables: LevelTables,
+    pub(super) wind_table: Section,
+    pub(super) level_tables: LevelTables,
 }
 
 /// What is known of the wood and the ground that are shown.
@@ -225,78 +221,7 @@ impl Workbench {
     }
 
     /// Shows the list of shortcuts, or another dialog.
-    pub fn show_dialog(&mut self, dialog: Option<ui::dialogs::Dialog>) {
+    pub fn show_dialog(&mut self, dialog: Option<Dialog>) {
         self.ui.dialog = dialog;
-    }
-}
-
-/// What the panels edit besides the species.
-#[derive(SystemParam)]
-pub(super) struct Edited<'w, 's> {
-    season: ResMut<'w, Season>,
-    wind: ResMut<'w, Wind>,
-    levels: ResMut<'w, LevelOfDetail>,
-    forests: Query<'w, 's, &'static mut ForestSettings>,
-    active_wind: Res<'w, ActiveWind>,
-    sway: Res<'w, ActiveSway>,
-}
-
-/// Draws the panels, and takes over what was changed in them. What was not changed does not count as changed.
-pub(super) fn draw_panels(mut contexts: EguiContexts, mut workbench: ResMut<Workbench>, edited: Edited) {
-    let Ok(context) = contexts.ctx_mut().cloned() else { return };
-    let Edited { mut season, mut wind, mut levels, mut forests, active_wind, sway } = edited;
-    let whole = UiBuilder::new().layer_id(LayerId::background()).max_rect(context.viewport_rect());
-    let mut ui = Ui::new(context.clone(), Id::new("windwood workbench"), whole);
-    let workbench = workbench.bypass_change_detection();
-    let (mut new_season, mut new_wind, mut new_levels) = (*season, wind.clone(), levels.clone());
-    let forest = forests.iter_mut().next();
-    let mut new_forest = forest.as_ref().map(|forest| (**forest).clone());
-    workbench.ui.panel = workbench.panel;
-    let drawn = ui::draw(
-        &mut ui,
-        &mut workbench.ui,
-        Subjects {
-            session: &mut workbench.session,
-            stage: &mut workbench.stage,
-            season: &mut new_season,
-            wind: &mut new_wind,
-            wind_table: &workbench.wind_table,
-            wind_facts: WindFacts {
-                measures: workbench.measures.as_ref(),
-                tip: workbench.tip.as_ref(),
-                is_changing: !active_wind.is_settled() || !sway.is_settled(),
-            },
-            woods: &mut workbench.woods,
-            woods_facts: WoodsFacts {
-                histogram: workbench.land.histogram.as_ref(),
-                stems: workbench.land.stems,
-                is_growing: workbench.land.is_growing,
-            },
-            ground: &mut workbench.ground,
-            ground_facts: GroundFacts {
-                variogram: workbench.land.variogram.as_ref(),
-                is_building: workbench.land.is_building,
-            },
-            pose: &mut workbench.pose,
-            view: workbench.land.view.as_ref(),
-            levels: &mut new_levels,
-            forest: new_forest.as_mut(),
-            level_tables: &workbench.level_tables,
-            is_frozen: &mut workbench.is_frozen,
-            costs: &workbench.costs,
-            tree: &workbench.tree,
-            legend: &workbench.legend,
-            has_turntable: workbench.has_turntable,
-        },
-    );
-    workbench.panel = workbench.ui.panel;
-    workbench.picture = Some((drawn.picture, context.pixels_per_point()));
-    workbench.is_quitting |= drawn.is_quitting;
-    workbench.is_cancelled |= drawn.is_cancelled;
-    season.set_if_neq(new_season);
-    wind.set_if_neq(new_wind);
-    levels.set_if_neq(new_levels);
-    if let Some((mut forest, new)) = forest.zip(new_forest) {
-        forest.set_if_neq(new);
     }
 }

@@ -1,5 +1,6 @@
 //! The panel of the ground: random fields, control points, and real maps.
 
+use bevy::math::{DVec2, Vec2};
 use bevy_egui::egui::{Button, ComboBox, DragValue, ProgressBar, ScrollArea, TextEdit, Ui, vec2};
 
 use super::{
@@ -57,16 +58,16 @@ fn show_all(ground: &GroundDesk, pose: &mut LandPose) {
     match ground.kind {
         GroundKind::Spline => {
             let points = control_points(ground.spline.document());
-            pose.show(points.into_iter().map(|(_, at)| bevy::math::Vec2::new(at.x, at.z)));
+            pose.show(points.into_iter().map(|(_, at)| Vec2::new(at.x, at.z)));
         }
         GroundKind::Random => {
             let half_m = 3.0 * ground.random.document().scale_m as f32;
-            pose.show([-1.0, 1.0].map(|side| bevy::math::Vec2::splat(side * half_m)));
+            pose.show([-1.0, 1.0].map(|side| Vec2::splat(side * half_m)));
         }
         GroundKind::Map => {
             let Some(fit) = &ground.fit else { return };
             let corner = fit.map.placement();
-            let corner = bevy::math::DVec2::new(corner.west_m, corner.north_m).as_vec2();
+            let corner = DVec2::new(corner.west_m, corner.north_m).as_vec2();
             pose.show([corner, -corner]);
         }
     }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::{
-    editor::{field_table::fields_of, field_text::Unit},
+    editor::fields::all_fields,
     tree::{Growth, Species, crown::impressionist::ImpressionistCrown, growth::zaharia},
     wind::FieldSettings,
 };
