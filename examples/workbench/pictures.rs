@@ -51,7 +51,7 @@ impl Default for Shot {
             dialog: None,
             is_changed: false,
             ground: None,
-            look: ([0.0, 30.0], 880.0, 50.0),
+            look: ([0.0, 10.0], 1200.0, 55.0),
         }
     }
 }

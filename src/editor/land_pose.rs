@@ -67,7 +67,7 @@ impl LandPose {
         });
         let Some([min, max]) = bounds else { return };
         self.middle = 0.5 * (min + max);
-        self.distance_m = (1.5 * (max - min).max_element()).clamp(60.0, DISTANCES_M[1]);
+        self.distance_m = (1.9 * (max - min).max_element()).clamp(60.0, DISTANCES_M[1]);
     }
 
     /// Where the eye is, and where it looks, over ground of those heights, m.
@@ -108,7 +108,7 @@ mod tests {
         (0..100).for_each(|_| pose.approach(-400.0));
         assert_eq!(pose.distance_m, DISTANCES_M[1]);
         pose.show([Vec2::new(-100.0, 0.0), Vec2::new(300.0, 50.0)]);
-        assert_eq!((pose.middle, pose.distance_m), (Vec2::new(100.0, 25.0), 600.0));
+        assert_eq!((pose.middle, pose.distance_m), (Vec2::new(100.0, 25.0), 760.0));
         let before = pose;
         pose.show([]);
         assert_eq!(pose, before);

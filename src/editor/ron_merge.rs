@@ -86,15 +86,22 @@ impl Texts<'_> {
         Some(())
     }
 
-    /// Items of a list with the commas that go with them.
+    /// Items of a list with the commas that go with them. The remark behind the item before stays.
     fn place_of_items(&self, own: &[Node], items: Range<usize>) -> Range<usize> {
-        let end = own[items.end - 1].span.end;
-        if items.start > 0 {
-            return own[items.start - 1].span.end..end;
+        let behind_comma = |item: &Node| {
+            let comma = behind_blank(self.own, item.span.end);
+            self.own[comma..].starts_with(',').then_some(comma + 1)
+        };
+        let last = &own[items.end - 1];
+        let before = items.start.checked_sub(1).map(|number| &own[number]);
+        match (before.map(|before| (before, behind_comma(before))), behind_comma(last)) {
+            (Some((_, Some(from))), Some(to)) => self.end_of_remark(from)..to,
+            (Some((before, _)), _) => before.span.end..last.span.end,
+            (None, to) => {
+                let end = own.get(items.end).map_or(to.unwrap_or(last.span.end), |next| next.span.start);
+                own[0].span.start..end
+            }
         }
-        let comma = behind_blank(self.own, end);
-        let behind_comma = if self.own[comma..].starts_with(',') { comma + 1 } else { end };
-        own[0].span.start..own.get(items.end).map_or(behind_comma, |next| next.span.start)
     }
 
     /// Adds items before that of a number, each on a line of its own where the others have one.
@@ -255,7 +262,7 @@ mod tests {
             format!("(areas: [{}\n])", items.concat())
         };
         let merged = |items: &[i32]| merge(own, &list(&[1, 2, 3]), &list(items)).unwrap();
-        assert_eq!(merged(&[1, 2]).text, own.replace(",\n    (a: 3)", ""));
+        assert_eq!(merged(&[1, 2]).text, own.replace("\n    (a: 3),", ""));
         assert_eq!(merged(&[2, 3]).text, own.replace("(a: 1), // one\n    ", ""));
         assert!(merged(&[2, 3]).loses_comments && !merged(&[1, 2]).loses_comments);
         assert_eq!(merged(&[1, 2, 3, 4]).text, own.replace("(a: 3),", "(a: 3),\n    (a: 4),"));

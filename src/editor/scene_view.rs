@@ -13,6 +13,9 @@ const MOST_STEPS: u32 = 2000;
 const HALVINGS: u32 = 40;
 /// The least step, m.
 const LEAST_STEP_M: f32 = 0.2;
+/// Depth of a point that tells the direction in which one looks. It is a thousand times as far as the near plane (depth 1): a nearer one is
+/// lost in the eye's own coordinates.
+const FAR_DEPTH: f32 = 1e-3;
 /// Steps along a line that follows the ground, m, and how many there are at most.
 const LINE_STEP_M: f32 = 8.0;
 const MOST_LINE_STEPS: f32 = 24.0;
@@ -55,7 +58,7 @@ impl SceneView {
     /// The direction in which a point of the screen looks.
     fn direction(&self, at: Vec2) -> Vec3 {
         let share = (at - self.min) / (self.max - self.min);
-        let ndc = Vec3::new(2.0 * share.x - 1.0, 1.0 - 2.0 * share.y, 1.0);
+        let ndc = Vec3::new(2.0 * share.x - 1.0, 1.0 - 2.0 * share.y, FAR_DEPTH);
         (self.world_from_clip.project_point3(ndc) - self.eye).normalize_or(Vec3::NEG_Y)
     }
 

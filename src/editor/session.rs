@@ -74,10 +74,6 @@ impl<T: Document> Session<T> {
         &self.file.document
     }
 
-    pub fn history(&self) -> &History<T> {
-        &self.history
-    }
-
     /// The table of fields. Ranges are those of the last settings that were valid.
     pub fn table(&self) -> &Arc<Section> {
         &self.table

@@ -122,7 +122,7 @@ pub(super) fn note_woods(
     let of_plan = || forests.iter().filter(|(forest, _)| forest.plan == applied.handle);
     let is_shown = applied.plan.as_ref() == Some(workbench.woods.plan()) || workbench.woods.session.error().is_some();
     let is_planted = |cells: &ForestCells| cells.is_planted() && cells.is_complete() && cells.is_up_to_date();
-    workbench.land.stems = of_plan().filter_map(|(_, cells)| Some(cells?.store().len())).sum();
+    workbench.land.stems = of_plan().filter_map(|(_, cells)| Some(cells?.store().plants())).sum();
     workbench.land.is_growing = !is_shown || !of_plan().all(|(_, cells)| cells.is_some_and(is_planted));
 }
 

@@ -56,7 +56,7 @@ fn undone_to_the_start_a_file_is_saved_byte_for_byte() {
     assert_eq!(session.question, None);
     assert!(text(&session) != OAK && Species::from_ron(&text(&session)).unwrap() == *session.document());
     (0..changed).for_each(|_| session.undo());
-    assert_eq!(session.history().undo_step(), None);
+    assert_eq!(session.undo_step(), None);
     session.save();
     // What was left out in the file was added with its changed value, and stays with the one it had.
     let saved = text(&session);
@@ -73,7 +73,7 @@ fn undone_to_the_start_without_saving_between_not_a_byte_is_changed() {
     session.save();
     assert_eq!(text(&session), OAK);
     (0..changed).for_each(|_| session.redo());
-    assert!(session.is_changed() && session.history().redo_step().is_none());
+    assert!(session.is_changed() && session.redo_step().is_none());
 }
 
 #[test]
@@ -198,7 +198,7 @@ fn work_of_a_session_that_ended_is_offered() {
     assert_eq!((again.question.clone(), again.document().name.as_str()), (Some(Question::Restore), "oak"));
     again.keep();
     again.answer_restore(true);
-    assert_eq!((again.document().name.as_str(), again.history().undo_step()), ("elm", Some("Restore unsaved work")));
+    assert_eq!((again.document().name.as_str(), again.undo_step()), ("elm", Some("Restore unsaved work")));
     again.save();
     assert!(Session::<Species>::open(&path).unwrap().question.is_none());
 }

@@ -116,7 +116,10 @@ fn draw_lines(painter: &Painter, view: &SceneView, woods: &Woods) {
         let is_held = woods.corner == Some(number);
         handle(painter, at, if is_held { Color32::WHITE } else { CHOSEN });
     }
-    if let Some(at) = handles.first().and_then(|place| view.screen(view.on_ground(*place))) {
+    // Beside a corner that is in sight, and away from the edge behind which it would be cut off.
+    let inner = painter.clip_rect().shrink2(bevy_egui::egui::vec2(90.0, 24.0));
+    let places = handles.iter().filter_map(|place| view.screen(view.on_ground(*place)));
+    if let Some(at) = places.into_iter().find(|at| inner.contains(to_egui(*at))) {
         label(painter, at, &element.name(plan));
     }
 }

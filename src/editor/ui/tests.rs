@@ -7,7 +7,7 @@ mod woods;
 
 use super::*;
 use crate::editor::stage::Arrangement;
-use bevy_egui::egui::{Key, Modifiers, Theme, ThemePreference, accesskit::Role};
+use bevy_egui::egui::{Key, Modifiers, Theme, ThemePreference, accesskit::Role, pos2};
 use desk::{Desk, WINDOWS};
 
 const ROLES_WITH_NAMES: [Role; 6] =
@@ -43,6 +43,19 @@ fn no_text_is_cut_off() {
                 let cut = desk.clipped_texts();
                 assert!(cut.is_empty(), "{species}, {panel:?}, {size:?}: {cut:#?}");
             }
+        }
+    }
+}
+
+#[test]
+fn controls_stay_in_their_panel() {
+    let mut desk = Desk::new("oak");
+    for (panel, _) in Panel::ALL {
+        desk.open(panel);
+        let fields = Rect::from_min_max(pos2(0.0, 40.0), pos2(PANEL_WIDTH, 680.0));
+        for (role, name, at) in desk.nodes() {
+            let is_of_fields = ROLES_WITH_NAMES.contains(&role) && fields.contains(at.left_center());
+            assert!(!is_of_fields || at.right() <= PANEL_WIDTH, "{panel:?}: {role:?} `{name}` at {at:?}");
         }
     }
 }

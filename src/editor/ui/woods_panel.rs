@@ -118,7 +118,7 @@ fn corner(ui: &mut Ui, woods: &mut Woods) {
         |ui, named| {
             for (axis, value) in [("x ", &mut wanted.x), ("z ", &mut wanted.y)] {
                 let drag = DragValue::new(value).prefix(axis).suffix(" m").max_decimals(1).update_while_editing(false);
-                ui.add_sized(vec2(88.0, ROW - 4.0), drag).labelled_by(named.id);
+                ui.add_sized(vec2(68.0, ROW - 4.0), drag).labelled_by(named.id);
             }
             if ui.small_button("+").on_hover_text("One more corner behind this one").clicked() {
                 woods.add_corner();

@@ -92,7 +92,7 @@ fn a_tree_that_is_being_grown_can_be_cancelled() {
     app.update();
     let workbench = app.world().resource::<Workbench>();
     assert_eq!(*workbench.species(), good);
-    assert_eq!(workbench.session.history().undo_step(), Some("Cancel"));
+    assert_eq!(workbench.session.undo_step(), Some("Cancel"));
 }
 
 #[test]

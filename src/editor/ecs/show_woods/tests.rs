@@ -1,5 +1,5 @@
 use super::*;
-use crate::{forest::ForestPlugin, tree::TreePlugin};
+use crate::WindwoodMinimalPlugins;
 
 const MIXED: &str = include_str!("../../../../assets/forests/mixed.forest.ron");
 
@@ -11,11 +11,13 @@ fn app() -> (tempfile::TempDir, App) {
     let mut workbench = Workbench::new(None, Some(&path), None, true);
     workbench.panel = Panel::Woods;
     let mut app = App::new();
-    app.add_plugins((TaskPoolPlugin::default(), AssetPlugin::default(), TransformPlugin, TreePlugin, ForestPlugin))
+    app.add_plugins((MinimalPlugins, TransformPlugin, AssetPlugin::default(), WindwoodMinimalPlugins))
         .insert_resource(workbench)
         .init_resource::<AppliedPlan>()
         .add_systems(Update, (apply_plan, count_quadrats).before(crate::schedule::WindwoodSystems::Stream))
         .add_systems(PostUpdate, note_woods);
+    app.finish();
+    app.cleanup();
     app.update();
     let handle = app.world().resource::<AppliedPlan>().handle.clone();
     app.world_mut()
@@ -32,7 +34,9 @@ fn wait(app: &mut App, mut is_there: impl FnMut(&Workbench) -> bool) {
         }
         std::thread::sleep(Duration::from_millis(1));
     }
-    panic!("it did not come");
+    let workbench = app.world().resource::<Workbench>();
+    let (land, error) = (&workbench.land, workbench.woods.session.error());
+    panic!("{} stems, growing: {}, {:?}, {error:?}", land.stems, land.is_growing, land.histogram);
 }
 
 fn change(app: &mut App, change: impl FnOnce(&mut ForestPlan)) {

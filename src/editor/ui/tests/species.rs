@@ -32,7 +32,7 @@ fn every_slider_changes_the_species_and_is_undone() {
         desk.drag(&way);
         assert_ne!(*desk.session.document(), before, "{name}");
         let mut steps = 0;
-        while desk.session.history().undo_step().is_some() {
+        while desk.session.undo_step().is_some() {
             desk.session.undo();
             steps += 1;
         }

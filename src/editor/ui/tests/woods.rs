@@ -3,9 +3,11 @@
 use super::desk::Desk;
 use crate::{
     editor::{
+        fields::Row,
         file_session::{FileSession, Message},
         plan_element::Element,
         ui::{Panel, theme::PANEL_WIDTH},
+        variants::with_list,
         woods::Tool,
     },
     scatter::{
@@ -69,7 +71,9 @@ fn a_drag_beside_the_handles_turns_the_view_and_the_wheel_brings_nearer() {
     };
     desk.frame(vec![Event::PointerMoved(from)]);
     desk.frame(vec![wheel]);
-    (0..10).for_each(|_| drop(desk.frame(Vec::new())));
+    for _ in 0..10 {
+        desk.frame(Vec::new());
+    }
     assert!(desk.pose.distance_m < pose.distance_m);
     desk.press("From above");
     assert!(desk.pose.rise_rad > 1.5);
@@ -139,11 +143,19 @@ fn the_law_is_chosen_from_its_list_and_species_are_added() {
     }
     desk.press("Poisson Poisson");
     assert!(format!("{:?}", desk.woods.plan().areas[0].pattern).starts_with("PoissonPoisson"));
-    let mut plan = desk.woods.plan().clone();
-    plan.areas[0].stock.truncate(1);
-    desk.woods.session.change(plan, "test");
+    let species = |desk: &mut Desk| {
+        let table = desk.woods.area_table().unwrap();
+        let of_stock = |row: &Row| match row {
+            Row::Section(section) => section.path.ends_with(".stock").then_some(section.rows.len()),
+            Row::Field(_) => None,
+        };
+        table.rows.iter().find_map(of_stock).unwrap()
+    };
+    assert_eq!(species(&mut desk), 2);
+    let longer = with_list(desk.woods.plan(), "areas[0].stock", true).unwrap();
+    desk.woods.session.change(longer, "test");
     desk.frame(Vec::new());
-    assert_eq!(desk.woods.area_table().map(|table| table.rows.len()).unwrap_or_default(), 11);
+    assert_eq!(species(&mut desk), 3);
 }
 
 #[test]
