@@ -7,7 +7,7 @@ use super::theme::palette;
 use crate::editor::spectrum::Band;
 
 /// Grid lines nearer than the first have no number, and those farther than the second have one in full strength, points.
-const LABEL_SPACING: Rangef = Rangef::new(34.0, 50.0);
+const LABEL_SPACING: Rangef = Rangef { min: 34.0, max: 50.0 };
 
 /// A curve of a plot.
 pub struct Curve<'a> {
