@@ -48,7 +48,7 @@
 //! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Terrain`](terrain::Terrain) | texture, render |
 //! | [`cells`] | the grid of a forest: what to plant, what is seen, stems by place; no ECS | scatter |
 //! | [`forest`] | forests that grow from plans around the viewers, [`Forest`](forest::Forest) | scatter, cells, terrain, tree, lod, sway, wind, render |
-//! | `editor` | panels that edit all of it while the program runs | forest, tree, lod, sway, wind, render, dynamics, texture |
+//! | `editor` | panels that edit all of it while the program runs | forest, scatter, terrain, tree, lod, sway, wind, render, dynamics, texture |
 //!
 //! What all rooms may use lies beside `lib.rs`: [`Ground`], [`Viewpoint`], [`SettingError`] and their like.
 //!
@@ -57,7 +57,7 @@
 //! # Features
 //! `render` (on by default) holds all drawing. Without it, [`WindwoodMinimalPlugins`] moves the same trees on a server or in
 //! a test. `picking` makes trees pickable by Bevy's pointers, `avian` makes their colliders bodies of `avian3d`. `export` writes trees and
-//! stands as files for other programs. `editor` adds the workbench: panels that edit species, wind and levels while the program runs.
+//! stands as files for other programs. `editor` adds the workbench: panels that edit species, woods, ground, wind and levels.
 
 #![forbid(unsafe_code)]
 

@@ -1,10 +1,11 @@
-//! The workbench: a tree on a turntable, and panels that edit its species, the wind and levels of detail.
+//! The workbench: a tree on a turntable, a wood or a piece of ground, and panels that edit them, the wind and levels of detail.
 //!
 //! In a window: everything by mouse or keys; `?` lists them. Without a display, or with `--headless`, a picture of each panel is
 //! written instead.
 //!
 //! `cargo run --features editor --example workbench -- --help` lists the options.
 
+mod land;
 mod options;
 mod pictures;
 // The gallery uses all of it.
@@ -44,11 +45,18 @@ fn main() -> ExitCode {
     };
     let mut app = App::new();
     app.add_plugins((engine, WindwoodPlugins))
-        .add_plugins(EditorPlugin { file: Some(options.file.clone()), turntable: true, starts_open: true })
+        .add_plugins(EditorPlugin {
+            file: Some(options.file.clone()),
+            plan: Some(options.plan.clone()),
+            ground: options.ground.clone(),
+            turntable: true,
+            starts_open: true,
+        })
         // One tree needs no lower levels, and they would take longer than the tree.
         .insert_resource(LevelOfDetail { style: LevelStyle::Full, ..default() })
         .insert_resource(Wind { speed: options.wind.wind, seed: options.wind.seed, fade_s: 1.0, ..default() })
-        .add_systems(Startup, studio::spawn);
+        .add_systems(Startup, studio::spawn)
+        .add_plugins(land::plugin);
     if options.image.headless {
         return start::exit_code(pictures::render(&mut app, &options));
     }

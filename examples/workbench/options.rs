@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// The workbench.
 #[derive(Parser, Clone, Debug)]
 #[command(
-    about = "Edits species, wind and levels of detail. Writes a picture of each panel where there is no window.",
+    about = "Edits species, woods, ground, wind and levels of detail. Writes a picture of each panel where there is no window.",
     mut_arg("size", |size| size.default_value("1280x720").help("Size of a picture, or of the window, pixels")),
     mut_arg("wind", |speed| speed.default_value("6")),
 )]
@@ -15,6 +15,12 @@ pub struct Options {
     /// The species that is edited first.
     #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/species/oak.species.ron"))]
     pub file: PathBuf,
+    /// The plan of a forest that is edited first.
+    #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/forests/mixed.forest.ron"))]
+    pub plan: PathBuf,
+    /// The ground that is edited first: `.bands.ron` or `.ground.ron`. Hills by default.
+    #[arg(long)]
+    pub ground: Option<PathBuf>,
     #[command(flatten)]
     pub wind: WindOptions,
     #[command(flatten)]

@@ -3,13 +3,14 @@
 use crate::{
     options::Options,
     studio,
-    support::capture::{self, create_folder, save, step},
+    support::capture::{self, create_folder, forests_are_drawn, save, step},
 };
 use bevy::prelude::*;
 use bevy_egui::{EguiContext, PrimaryEguiContext, egui::ThemePreference};
 use bevy_windwood::{
     editor::{Arrangement, Dialog, Panel, Stage, StageCamera, View, Workbench},
     prelude::*,
+    terrain::TerrainChunks,
 };
 use std::{
     path::Path,
@@ -17,7 +18,7 @@ use std::{
 };
 
 /// Longest wait for what a picture shows.
-const TIMEOUT: Duration = Duration::from_secs(120);
+const TIMEOUT: Duration = Duration::from_secs(300);
 /// Frames after which panels have their layout, and a tree is drawn.
 const SETTLING_FRAMES: usize = 8;
 
@@ -33,6 +34,10 @@ struct Shot {
     dialog: Option<fn(&Path) -> Dialog>,
     /// Whether something is changed before.
     is_changed: bool,
+    /// The ground, if it is another than that of the options.
+    ground: Option<&'static str>,
+    /// Where a wood or ground is looked at: place (x, z) and distance, m, and angle over the level, degrees.
+    look: ([f32; 2], f32, f32),
 }
 
 impl Default for Shot {
@@ -45,6 +50,8 @@ impl Default for Shot {
             filter: "",
             dialog: None,
             is_changed: false,
+            ground: None,
+            look: ([0.0, 10.0], 1200.0, 55.0),
         }
     }
 }
@@ -71,6 +78,15 @@ fn shots() -> Vec<Shot> {
         view("frequencies", View::Frequencies),
         view("levels", View::Levels),
         view("leaf_area", View::LeafArea),
+        Shot { name: "woods", panel: Panel::Woods, ..default() },
+        Shot { name: "ground", panel: Panel::Ground, look: ([0.0; 2], 1500.0, 24.0), ..default() },
+        Shot {
+            name: "control_points",
+            panel: Panel::Ground,
+            ground: Some("terrain/five_patches.ground.ron"),
+            look: ([0.0; 2], 620.0, 28.0),
+            ..default()
+        },
         Shot { name: "wind", panel: Panel::Wind, stage: Stage { shows_wind: true, ..default() }, ..default() },
         Shot { name: "cost", panel: Panel::Levels, ..default() },
         Shot { name: "open", dialog: Some(Dialog::open), ..default() },
@@ -109,6 +125,11 @@ fn show(app: &mut App, options: &Options, shot: &Shot) {
     let world = app.world_mut();
     let mut workbench = world.resource_mut::<Workbench>();
     open(&mut workbench, &file);
+    if let Some(ground) = shot.ground {
+        workbench.open_ground(&Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/assets")).join(ground));
+    }
+    let (place, distance_m, rise_deg) = shot.look;
+    workbench.look_at_place(place.into(), distance_m, rise_deg);
     workbench.panel = shot.panel;
     workbench.stage = shot.stage.clone();
     workbench.find_field(shot.filter);
@@ -139,20 +160,41 @@ fn wait(app: &mut App, shot: &Shot) -> Result<(), String> {
     // Software takes a second for a picture of a tree: it is looked at when it is the right one.
     look(app, false);
     (0..SETTLING_FRAMES).for_each(|_| step(app));
-    loop {
-        let workbench = app.world().resource::<Workbench>();
-        if workbench.is_settled() && app.world().resource::<ActiveSway>().is_ready() {
-            break;
-        }
-        if start.elapsed() > TIMEOUT {
-            return Err(format!("what the picture `{}` shows did not get ready", shot.name));
-        }
+    // Woods and ground grow about what looks at them.
+    let eye = camera(app);
+    let viewpoint = app.world_mut().spawn((Viewpoint, eye)).id();
+    let mut is_ready = false;
+    while !is_ready && start.elapsed() < TIMEOUT {
+        let eye = camera(app);
+        app.world_mut().entity_mut(viewpoint).insert(eye);
         app.update();
         std::thread::sleep(Duration::from_millis(2));
+        is_ready = is_shown(app, shot.panel);
+    }
+    app.world_mut().despawn(viewpoint);
+    if !is_ready {
+        return Err(format!("what the picture `{}` shows did not get ready", shot.name));
     }
     look(app, true);
     (0..SETTLING_FRAMES).for_each(|_| step(app));
     Ok(())
+}
+
+/// Whether all that the picture shows is there.
+fn is_shown(app: &mut App, panel: Panel) -> bool {
+    let world = app.world_mut();
+    let is_settled = world.resource::<Workbench>().is_settled() && world.resource::<ActiveSway>().is_ready();
+    let is_raised = !panel.is_of_land()
+        || (world.query::<&TerrainChunks>().iter(world).count() == 1
+            && world.query::<&TerrainChunks>().iter(world).all(TerrainChunks::is_complete));
+    let is_planted = panel != Panel::Woods || forests_are_drawn(world);
+    is_settled && is_raised && is_planted
+}
+
+fn camera(app: &mut App) -> Transform {
+    let world = app.world_mut();
+    let mut cameras = world.query_filtered::<&Transform, With<StageCamera>>();
+    cameras.iter(world).next().copied().unwrap_or_default()
 }
 
 /// Switches the camera of the turntable on or off.

@@ -70,7 +70,7 @@ fn variate(random: &mut impl Rng) -> f64 {
 mod tests {
     use super::*;
     use crate::{
-        editor::fields::{all_fields, fields_of},
+        editor::{field_table::fields_of, fields::all_fields},
         tree::Species,
     };
 

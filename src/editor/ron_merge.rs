@@ -57,15 +57,82 @@ impl Texts<'_> {
                 }
                 self.merge_fields(own, old_fields, fields, edits)
             }
-            (Shape::List(own), Shape::List(old), Shape::List(new))
-                if is_same_variant && own.len() == old.len() && old.len() == new.len() =>
-            {
-                own.iter().zip(old).zip(new).try_for_each(|((own, old), new)| self.merge(own, old, new, edits))
+            (Shape::List(items), Shape::List(old), Shape::List(new)) if is_same_variant && items.len() == old.len() => {
+                self.merge_items(own, items, old, new, edits)
             }
             _ => {
                 edits.push(Edit { place: own.span.clone(), text: new_text.to_owned() });
                 Some(())
             }
+        }
+    }
+
+    /// Items that stay keep their place: what came or went is between the equal ones at the beginning and at the end.
+    fn merge_items(&self, list: &Node, own: &[Node], old: &[Node], new: &[Node], edits: &mut Vec<Edit>) -> Option<()> {
+        let is_same = |(old, new): &(&Node, &Node)| self.old[old.span.clone()] == self.new[new.span.clone()];
+        let shorter = old.len().min(new.len());
+        let before = old.iter().zip(new).take_while(is_same).count();
+        let behind = old.iter().rev().zip(new.iter().rev()).take(shorter - before).take_while(is_same).count();
+        let end = shorter - behind;
+        for number in before..end {
+            self.merge(&own[number], &old[number], &new[number], edits)?;
+        }
+        if old.len() > new.len() {
+            edits.push(Edit { place: self.place_of_items(own, end..old.len() - behind), text: String::new() });
+        }
+        if new.len() > old.len() {
+            self.add_items(list, own, end, &new[end..new.len() - behind], edits);
+        }
+        Some(())
+    }
+
+    /// Items of a list with the commas that go with them. The remark behind the item before stays.
+    fn place_of_items(&self, own: &[Node], items: Range<usize>) -> Range<usize> {
+        let behind_comma = |item: &Node| {
+            let comma = behind_blank(self.own, item.span.end);
+            self.own[comma..].starts_with(',').then_some(comma + 1)
+        };
+        let last = &own[items.end - 1];
+        let before = items.start.checked_sub(1).map(|number| &own[number]);
+        match (before.map(|before| (before, behind_comma(before))), behind_comma(last)) {
+            (Some((_, Some(from))), Some(to)) => self.end_of_remark(from)..to,
+            (Some((before, _)), _) => before.span.end..last.span.end,
+            (None, to) => {
+                let end = own.get(items.end).map_or(to.unwrap_or(last.span.end), |next| next.span.start);
+                own[0].span.start..end
+            }
+        }
+    }
+
+    /// Adds items before that of a number, each on a line of its own where the others have one.
+    fn add_items(&self, list: &Node, own: &[Node], number: usize, new: &[Node], edits: &mut Vec<Edit>) {
+        let Some(neighbour) = number.checked_sub(1).or(Some(0)).and_then(|number| own.get(number)) else {
+            let items: Vec<&str> = new.iter().map(|item| &self.new[item.span.clone()]).collect();
+            edits.push(insert(list.span.end - 1, items.join(", ")));
+            return;
+        };
+        let line = indent_of_line(self.own, neighbour.span.start);
+        let separator = line.map_or(" ".to_owned(), |indent| format!("\n{indent}"));
+        let items = new.iter().map(|item| {
+            let text = &self.new[item.span.clone()];
+            match (line, indent_of_line(self.new, item.span.start)) {
+                (Some(indent), Some(writers)) => text.replace(&format!("\n{writers}"), &format!("\n{indent}")),
+                _ => text.to_owned(),
+            }
+        });
+        if number == 0 {
+            let text: String = items.map(|item| format!("{item},{separator}")).collect();
+            edits.push(insert(neighbour.span.start, text));
+            return;
+        }
+        let text: String = items.map(|item| format!("{separator}{item},")).collect();
+        let comma = behind_blank(self.own, neighbour.span.end);
+        if self.own[comma..].starts_with(',') {
+            let at = if line.is_some() { self.end_of_remark(comma + 1) } else { comma + 1 };
+            edits.push(insert(at, text));
+        } else {
+            let text = text.strip_suffix(',').unwrap_or(&text);
+            edits.push(insert(neighbour.span.end, format!(",{text}")));
         }
     }
 
@@ -95,7 +162,6 @@ impl Texts<'_> {
     /// Adds fields behind the last one, in lines of their own if that one has its own.
     fn add(&self, own: &Node, added: &[String], edits: &mut Vec<Edit>) {
         let Shape::Struct(fields) = &own.shape else { return };
-        let insert = |at: usize, text: String| Edit { place: at..at, text };
         let Some((_, last)) = fields.last() else {
             edits.push(insert(own.span.end - 1, added.join(", ")));
             return;
@@ -127,6 +193,17 @@ impl Texts<'_> {
         let rest = rest.strip_suffix('\r').unwrap_or(rest);
         if rest.trim_start().starts_with("//") { at + rest.len() } else { at }
     }
+}
+
+fn insert(at: usize, text: String) -> Edit {
+    Edit { place: at..at, text }
+}
+
+/// The white space before what begins at a place; none where something else stands on the line before it.
+fn indent_of_line(text: &str, at: usize) -> Option<&str> {
+    let line = text[..at].rfind('\n').map_or(0, |end| end + 1);
+    let before = &text[line..at];
+    (line > 0 && before.trim().is_empty()).then_some(before)
 }
 
 #[cfg(test)]
@@ -175,6 +252,28 @@ mod tests {
         assert_eq!(merged, Merged { text: "(growth: Fir(floors: 2), /* x */)".into(), loses_comments: false });
         assert!(merge("(growth: Oak(/* x */))", old, new).unwrap().loses_comments);
         assert_eq!(merged_name("Tree(name: \"oak\" /* x */)"), "Tree(name: \"elm\" /* x */)");
+    }
+
+    #[test]
+    fn items_that_stay_keep_their_comments_when_others_come_and_go() {
+        let own = "(areas: [\n    // The first.\n    (a: 1), // one\n    (a: 2), // two\n    (a: 3),\n])";
+        let list = |items: &[i32]| {
+            let items: Vec<String> = items.iter().map(|item| format!("\n  (a: {item}),")).collect();
+            format!("(areas: [{}\n])", items.concat())
+        };
+        let merged = |items: &[i32]| merge(own, &list(&[1, 2, 3]), &list(items)).unwrap();
+        assert_eq!(merged(&[1, 2]).text, own.replace("\n    (a: 3),", ""));
+        assert_eq!(merged(&[2, 3]).text, own.replace("(a: 1), // one\n    ", ""));
+        assert!(merged(&[2, 3]).loses_comments && !merged(&[1, 2]).loses_comments);
+        assert_eq!(merged(&[1, 2, 3, 4]).text, own.replace("(a: 3),", "(a: 3),\n    (a: 4),"));
+        assert_eq!(merged(&[1, 5, 2, 3]).text, own.replace("(a: 1), // one", "(a: 1), // one\n    (a: 5),"));
+        assert_eq!(merged(&[0, 1, 2, 3]).text, own.replace("(a: 1)", "(a: 0),\n    (a: 1)"));
+        assert_eq!(merged(&[1, 9, 3]).text, own.replace("a: 2", "a: 9"));
+        let inline = |own: &str, from: &str, to: &str| merge(own, from, to).unwrap().text;
+        assert_eq!(inline("([1, 2])", "([1, 2])", "([1, 2, 3])"), "([1, 2, 3])");
+        assert_eq!(inline("([1, 2,])", "([1, 2])", "([1, 2, 3])"), "([1, 2, 3,])");
+        assert_eq!(inline("([])", "([])", "([1, 2])"), "([1, 2])");
+        assert_eq!(inline("([1, 2,])", "([1, 2])", "([])"), "([])");
     }
 
     #[test]

@@ -30,11 +30,11 @@ pub(super) fn is_open(workbench: Res<Workbench>) -> bool {
 }
 
 fn look_at_disk(mut workbench: ResMut<Workbench>) {
-    workbench.bypass_change_detection().session.look_at_disk();
+    workbench.bypass_change_detection().files().into_iter().for_each(|(_, files)| files.look_at_disk());
 }
 
 fn keep_work(mut workbench: ResMut<Workbench>) {
-    workbench.bypass_change_detection().session.keep();
+    workbench.bypass_change_detection().files().into_iter().for_each(|(_, files)| files.keep());
 }
 
 /// Ends the program once nothing would be lost by it. Where Bevy closes windows by itself it is not asked.
@@ -46,9 +46,10 @@ fn end_program(
     let workbench = workbench.bypass_change_detection();
     if requests.read().count() > 0 {
         workbench.is_open = true;
-        workbench.is_quitting |= workbench.session.may_quit();
+        workbench.is_quitting = true;
     }
-    if workbench.is_quitting {
+    // An answer that lets the program end is about one file: the others are asked for theirs.
+    if std::mem::take(&mut workbench.is_quitting) && workbench.may_quit() {
         exit.write(AppExit::Success);
     }
 }

@@ -1,28 +1,36 @@
 //! The workbench in an app.
 
 mod camera;
+mod land;
 mod manners;
 mod measure;
 mod mesh;
+mod panels;
+mod show_ground;
 mod show_species;
+mod show_woods;
 pub mod turntable;
 pub mod workbench;
 
 use self::{
     camera::{scale_panels, switch_camera},
+    land::{note_view, show_land},
     manners::is_open,
     measure::{Measuring, measure_tip, measure_wind, note_costs, show_arrows},
     mesh::{begin_diagrams, hide_trees, show_diagrams},
+    panels::draw_panels,
+    show_ground::{BuiltGround, build_ground, fit_map, raise_ground},
     show_species::{Applied, apply_species, has_species_to_show, note_tree},
+    show_woods::{AppliedPlan, apply_plan, count_quadrats, note_woods},
     turntable::{arrange_trees, place_trees, turn},
-    workbench::{Workbench, draw_panels},
+    workbench::Workbench,
 };
 use crate::{plugin_checks::require_plugin, render::TreeRenderPlugin, schedule::WindwoodSystems, timing::timed};
-use bevy::prelude::*;
+use bevy::{camera::CameraUpdateSystems, prelude::*};
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass};
 use std::path::PathBuf;
 
-/// The workbench: panels that edit species, wind and levels of detail while the program runs. Add it after
+/// The workbench: panels that edit species, woods, the ground, the wind and levels of detail while the program runs. Add it after
 /// [`WindwoodPlugins`](crate::WindwoodPlugins); F2 opens and closes it.
 ///
 /// It adds `bevy_egui`'s plugin where there is none, and draws with a camera of its own.
@@ -30,6 +38,10 @@ use std::path::PathBuf;
 pub struct EditorPlugin {
     /// The file of the species that is edited first. In a game, its trees change with it where the game has loaded that file.
     pub file: Option<PathBuf>,
+    /// The file of the plan that is edited first. In a game, forests change with it where the game has loaded that file.
+    pub plan: Option<PathBuf>,
+    /// The file of the ground that is edited first: `.bands.ron` for random ground, `.ground.ron` for ground of control points.
+    pub ground: Option<PathBuf>,
     /// Whether the species stands on a turntable, before a [`StageCamera`](turntable::StageCamera) of yours. Else it stands
     /// wherever the game has planted it.
     pub turntable: bool,
@@ -47,10 +59,13 @@ impl Plugin for EditorPlugin {
             // What is typed or dragged in a panel is not meant for the game.
             settings.enable_absorb_bevy_input_system = true;
         }
-        let mut workbench = Workbench::new(self.file.as_deref(), self.turntable);
+        let (plan, ground) = (self.plan.as_deref(), self.ground.as_deref());
+        let mut workbench = Workbench::new(self.file.as_deref(), plan, ground, self.turntable);
         workbench.is_open = self.starts_open;
         app.insert_resource(workbench)
             .init_resource::<Applied>()
+            .init_resource::<AppliedPlan>()
+            .init_resource::<BuiltGround>()
             .init_resource::<Measuring>()
             .add_plugins(manners::plugin)
             .add_systems(PreUpdate, scale_panels.run_if(is_open))
@@ -64,18 +79,31 @@ impl Plugin for EditorPlugin {
                         show_arrows,
                     )
                         .before(WindwoodSystems::Bake),
+                    (apply_plan, count_quadrats, fit_map, build_ground, raise_ground)
+                        .run_if(is_open)
+                        .before(WindwoodSystems::Stream),
                 ),
             )
-            .add_systems(PostUpdate, note_tree.run_if(is_open))
+            .add_systems(
+                PostUpdate,
+                (
+                    note_tree,
+                    note_woods,
+                    // Cameras know their matrices by then.
+                    note_view.after(TransformSystems::Propagate).after(CameraUpdateSystems),
+                )
+                    .run_if(is_open),
+            )
             .add_systems(Last, note_costs.run_if(is_open));
         // What the panels cost is told with the rest.
         let draw_panels = timed!(app, draw_panels).run_if(is_open);
         app.add_systems(EguiPrimaryContextPass, draw_panels);
         if self.turntable {
-            app.add_systems(Update, (turn, arrange_trees).chain().before(WindwoodSystems::Bake)).add_systems(
-                Update,
-                (place_trees, begin_diagrams, show_diagrams, hide_trees).chain().after(WindwoodSystems::SelectLod),
-            );
+            app.add_systems(Update, ((turn, arrange_trees).chain(), show_land).before(WindwoodSystems::Bake))
+                .add_systems(
+                    Update,
+                    (place_trees, begin_diagrams, show_diagrams, hide_trees).chain().after(WindwoodSystems::SelectLod),
+                );
         }
     }
 }

@@ -5,6 +5,7 @@ use super::{
     workbench::Workbench,
 };
 use crate::{
+    editor::file_session::FileSession,
     render::{TreeMeshOf, TreeMeshes},
     tree::{Grown, Species, SpeciesModels, TreeModel},
 };

@@ -1,6 +1,6 @@
 //! The turntable: the trees that are edited and compared, and the camera that looks at them.
 
-use super::workbench::Workbench;
+use super::{show_ground::BuiltGround, workbench::Workbench};
 use crate::{
     editor::{
         diagram::View,
@@ -32,6 +32,8 @@ const DRAG_RAD: f32 = 0.006;
 const WHEEL: f32 = 0.08;
 const DISTANCES: [f32; 2] = [0.15, 3.0];
 const RISES_RAD: [f32; 2] = [-0.2, 1.4];
+/// A wood or ground is seen as far as this, m.
+const FARTHEST_M: f32 = 40_000.0;
 
 /// Gives the trees what the stage wants of them; spawns those that are missing, and removes those that are too many. A tree that becomes
 /// another one stays until that is grown.
@@ -84,8 +86,9 @@ fn extent_m(model: &TreeModel) -> [f32; 2] {
 pub(super) fn place_trees(
     mut workbench: ResMut<Workbench>,
     models: Res<Assets<TreeModel>>,
+    ground: Res<BuiltGround>,
     mut trees: Query<(&StageTree, &Grown, &mut Transform), Without<StageCamera>>,
-    mut cameras: Query<(&mut Transform, &Projection, &mut Camera), With<StageCamera>>,
+    mut cameras: Query<(&mut Transform, &mut Projection, &mut Camera), With<StageCamera>>,
     mut whole_m: Local<[f32; 2]>,
 ) {
     let mut grown: Vec<_> = trees.iter_mut().collect();
@@ -101,7 +104,7 @@ pub(super) fn place_trees(
         *whole_m = [extents.iter().map(|[height, _]| *height).fold(0.2, f32::max), width_m];
     }
     let picture = workbench.picture;
-    let Ok((mut transform, projection, mut camera)) = cameras.single_mut() else { return };
+    let Ok((mut transform, mut projection, mut camera)) = cameras.single_mut() else { return };
     if let Some(viewport) = picture.and_then(|(points, scale)| viewport(points, scale, &camera)) {
         let before = camera.viewport.as_ref().map(|it| (it.physical_position, it.physical_size));
         if before != Some((viewport.physical_position, viewport.physical_size)) {
@@ -109,7 +112,16 @@ pub(super) fn place_trees(
         }
     }
     let size = camera.physical_viewport_size().unwrap_or(UVec2::ONE).as_vec2();
-    let Projection::Perspective(perspective) = projection else { return };
+    let Projection::Perspective(perspective) = projection.bypass_change_detection() else { return };
+    if workbench.panel.is_of_land() {
+        let [eye, middle] = workbench.pose.eye(|place| ground.height_m(place));
+        transform.set_if_neq(Transform::from_translation(eye).looking_at(middle, Vec3::Y));
+        if perspective.far < FARTHEST_M {
+            perspective.far = FARTHEST_M;
+            projection.set_changed();
+        }
+        return;
+    }
     let stage = &mut workbench.bypass_change_detection().stage;
     let columns = if stage.view == View::Levels { 3.2 } else { 1.0 };
     let [eye, middle] = stage.eye(whole_m[0], whole_m[1] * columns, size.x / size.y, perspective.fov);
@@ -135,6 +147,9 @@ pub(super) fn turn(
     wants: Res<EguiWantsInput>,
     mut workbench: ResMut<Workbench>,
 ) {
+    if workbench.panel.is_of_land() {
+        return;
+    }
     let stage = &mut workbench.bypass_change_detection().stage;
     if stage.turns {
         stage.turn_rad = (stage.turn_rad + time.delta_secs() / TURN_S * std::f32::consts::TAU) % std::f32::consts::TAU;

@@ -1,28 +1,35 @@
-//! The workbench as a resource, and the system that draws its panels.
+//! The workbench as a resource.
 
 use std::path::{Path, PathBuf};
 
 use crate::{
     editor::{
         costs::Costs,
+        document::Document,
         fields::Section,
+        file_session::FileSession,
+        ground_desk::{GroundDesk, GroundKind},
+        ground_variogram::GroundVariogram,
+        land_pose::LandPose,
+        plan_element::Element,
+        quadrat_histogram::QuadratHistogram,
+        scene_view::SceneView,
         session::Session,
         stage::Stage,
         tip_motion::TipMotion,
-        ui::{self, LevelTables, Panel, Subjects, TreeFacts, UiState, WindFacts, wind_table},
+        ui::{LevelTables, Panel, TreeFacts, UiState, dialogs::Dialog, wind_table},
         wind_measures::WindMeasures,
+        woods::Woods,
     },
     forest::ForestSettings,
     render::LevelOfDetail,
-    sway::ActiveSway,
-    tree::{Season, Species},
-    wind::{ActiveWind, Wind},
+    scatter::ForestPlan,
+    terrain::{SplineGroundSettings, TurningBandsSettings},
+    tree::Species,
+    wind::Wind,
 };
-use bevy::{ecs::system::SystemParam, prelude::*};
-use bevy_egui::{
-    EguiContexts,
-    egui::{Id, LayerId, Rect, Ui, UiBuilder},
-};
+use bevy::prelude::*;
+use bevy_egui::egui::Rect;
 
 /// The workbench: what is edited, and what is shown of it.
 #[derive(Resource)]
@@ -35,8 +42,13 @@ pub struct Workbench {
     pub stage: Stage,
     /// Whether levels, streaming and culling stay as they are, while the camera goes elsewhere.
     pub is_frozen: bool,
-    pub(super) session: Session,
-    ui: UiState,
+    pub(super) session: Session<Species>,
+    pub(super) woods: Woods,
+    pub(super) ground: GroundDesk,
+    /// From where a wood or ground is looked at, on the turntable.
+    pub(super) pose: LandPose,
+    pub(super) land: LandFacts,
+    pub(super) ui: UiState,
     /// The assets that show the species as it is edited, and as it is in its file.
     pub(super) shown: Handle<Species>,
     pub(super) saved: Handle<Species>,
@@ -50,25 +62,53 @@ pub struct Workbench {
     pub(super) is_quitting: bool,
     /// What the panels leave free, in points; and how many pixels a point has.
     pub(super) picture: Option<(Rect, f32)>,
-    wind_table: Section,
-    level_tables: LevelTables,
+    pub(super) wind_table: Section,
+    pub(super) level_tables: LevelTables,
+}
+
+/// What is known of the wood and the ground that are shown.
+#[derive(Default)]
+pub(super) struct LandFacts {
+    /// The picture, if there is one.
+    pub view: Option<SceneView>,
+    pub histogram: Option<Result<QuadratHistogram, String>>,
+    pub stems: usize,
+    pub is_growing: bool,
+    pub variogram: Option<GroundVariogram>,
+    pub is_building: bool,
+}
+
+/// The session of a file; of a new one where it cannot be read.
+fn session_of<T: Document>(path: Option<&Path>, new: T) -> Session<T> {
+    let Some(path) = path else { return Session::new(&PathBuf::from(format!("new{}", T::EXTENSION)), new) };
+    Session::open(path).unwrap_or_else(|error| {
+        warn!("workbench: {error}; a new {} is begun", T::NAME);
+        Session::new(path, new)
+    })
 }
 
 impl Workbench {
-    /// A workbench with a species from a file; with the default species, if the file cannot be read.
-    pub(super) fn new(path: Option<&Path>, has_turntable: bool) -> Self {
-        let path = path.map_or_else(|| PathBuf::from("new.species.ron"), Path::to_owned);
-        let new = || Session::new(&path, Species { name: "new".into(), ..Species::default() });
-        let session = Session::open(&path).unwrap_or_else(|error| {
-            warn!("workbench: {error}; a new species is begun");
-            new()
-        });
+    /// A workbench with files; with new ones, where they cannot be read. `ground` is of either kind.
+    pub(super) fn new(species: Option<&Path>, plan: Option<&Path>, ground: Option<&Path>, has_turntable: bool) -> Self {
+        let session = session_of(species, Species { name: "new".into(), ..Species::default() });
+        let is_spline = |path: &&Path| path.to_string_lossy().ends_with(<SplineGroundSettings as Document>::EXTENSION);
+        let random = session_of(ground.filter(|path| !is_spline(path)), TurningBandsSettings::default());
+        let spline = session_of(ground.filter(is_spline), SplineGroundSettings::default());
+        let mut ground_desk = GroundDesk::new(random, spline);
+        ground_desk.is_shown = has_turntable;
+        if ground.is_some_and(|path| is_spline(&path)) {
+            ground_desk.kind = GroundKind::Spline;
+        }
         Self {
             is_open: false,
             panel: Panel::default(),
             stage: Stage::default(),
             is_frozen: false,
             session,
+            woods: Woods::new(session_of(plan, ForestPlan::default())),
+            ground: ground_desk,
+            pose: LandPose::default(),
+            land: LandFacts::default(),
             ui: UiState::default(),
             shown: Handle::default(),
             saved: Handle::default(),
@@ -91,9 +131,59 @@ impl Workbench {
         self.session.open_another(path);
     }
 
+    /// Opens the plan of a forest; asks first where changes would be lost.
+    pub fn open_plan(&mut self, path: &Path) {
+        self.woods.session.open_another(path);
+        self.show_whole_plan();
+    }
+
+    /// Opens ground of either kind, by the ending of its file; asks first where changes would be lost.
+    pub fn open_ground(&mut self, path: &Path) {
+        self.ground.open(path);
+    }
+
+    /// Looks at the whole plan from above, at an angle over the level, degrees.
+    pub fn look_at_plan(&mut self, rise_deg: f32) {
+        self.show_whole_plan();
+        self.look_at_place(self.pose.middle, self.pose.distance_m, rise_deg);
+    }
+
+    /// Looks at a place (x, z), m, from a distance, m, at an angle over the level, degrees.
+    pub fn look_at_place(&mut self, place: Vec2, distance_m: f32, rise_deg: f32) {
+        self.pose = LandPose { middle: place, distance_m, rise_rad: rise_deg.to_radians(), ..self.pose };
+    }
+
+    fn show_whole_plan(&mut self) {
+        let plan = self.woods.plan();
+        self.pose.show(Element::all(plan).flat_map(|element| element.handles(plan)).collect::<Vec<_>>());
+    }
+
+    /// Everything that has a file.
+    pub(super) fn files(&mut self) -> [(Panel, &mut dyn FileSession); 4] {
+        [
+            (Panel::Species, &mut self.session as &mut dyn FileSession),
+            (Panel::Woods, &mut self.woods.session),
+            (Panel::Ground, &mut self.ground.random),
+            (Panel::Ground, &mut self.ground.spline),
+        ]
+    }
+
+    /// Whether the program may end: else the first file with unsaved changes is shown, and asked about.
+    pub(super) fn may_quit(&mut self) -> bool {
+        let asks = self.files().into_iter().position(|(_, files)| !files.may_quit());
+        let Some(number) = asks else { return true };
+        self.panel = [Panel::Species, Panel::Woods, Panel::Ground, Panel::Ground][number];
+        match number {
+            2 => self.ground.kind = GroundKind::Random,
+            3 => self.ground.kind = GroundKind::Spline,
+            _ => {}
+        }
+        false
+    }
+
     /// The species as it is edited.
     pub fn species(&self) -> &Species {
-        self.session.species()
+        self.session.document()
     }
 
     /// Changes the species; `step` is what undoing it is called.
@@ -104,14 +194,24 @@ impl Workbench {
 
     /// Undoes everything.
     pub fn undo_all(&mut self) {
-        while self.session.history().undo_step().is_some() {
-            self.session.undo();
+        for (_, files) in self.files() {
+            while files.undo_step().is_some() {
+                files.undo();
+            }
         }
     }
 
-    /// Whether what is asked for is there: the tree as it is edited, and, in the panel of the wind, what is measured of it.
+    /// Whether what is asked for is there: the tree, the wood or the ground as it is edited, and what is measured of it.
     pub fn is_settled(&self) -> bool {
-        let is_measured = self.panel != Panel::Wind || (self.measures.is_some() && self.tip.is_some());
+        let is_measured = match self.panel {
+            Panel::Wind => self.measures.is_some() && self.tip.is_some(),
+            Panel::Woods => !self.land.is_growing && !self.land.is_building && self.land.histogram.is_some(),
+            Panel::Ground => !self.land.is_building && self.ground.plan().is_some(),
+            Panel::Species | Panel::Levels => true,
+        };
+        if self.panel.is_of_land() {
+            return is_measured && self.land.view.is_some();
+        }
         !self.tree.is_growing && is_measured && self.picture.is_some()
     }
 
@@ -121,65 +221,7 @@ impl Workbench {
     }
 
     /// Shows the list of shortcuts, or another dialog.
-    pub fn show_dialog(&mut self, dialog: Option<ui::dialogs::Dialog>) {
+    pub fn show_dialog(&mut self, dialog: Option<Dialog>) {
         self.ui.dialog = dialog;
-    }
-}
-
-/// What the panels edit besides the species.
-#[derive(SystemParam)]
-pub(super) struct Edited<'w, 's> {
-    season: ResMut<'w, Season>,
-    wind: ResMut<'w, Wind>,
-    levels: ResMut<'w, LevelOfDetail>,
-    forests: Query<'w, 's, &'static mut ForestSettings>,
-    active_wind: Res<'w, ActiveWind>,
-    sway: Res<'w, ActiveSway>,
-}
-
-/// Draws the panels, and takes over what was changed in them. What was not changed does not count as changed.
-pub(super) fn draw_panels(mut contexts: EguiContexts, mut workbench: ResMut<Workbench>, edited: Edited) {
-    let Ok(context) = contexts.ctx_mut().cloned() else { return };
-    let Edited { mut season, mut wind, mut levels, mut forests, active_wind, sway } = edited;
-    let whole = UiBuilder::new().layer_id(LayerId::background()).max_rect(context.viewport_rect());
-    let mut ui = Ui::new(context.clone(), Id::new("windwood workbench"), whole);
-    let workbench = workbench.bypass_change_detection();
-    let (mut new_season, mut new_wind, mut new_levels) = (*season, wind.clone(), levels.clone());
-    let forest = forests.iter_mut().next();
-    let mut new_forest = forest.as_ref().map(|forest| (**forest).clone());
-    workbench.ui.panel = workbench.panel;
-    let drawn = ui::draw(
-        &mut ui,
-        &mut workbench.ui,
-        Subjects {
-            session: &mut workbench.session,
-            stage: &mut workbench.stage,
-            season: &mut new_season,
-            wind: &mut new_wind,
-            wind_table: &workbench.wind_table,
-            wind_facts: WindFacts {
-                measures: workbench.measures.as_ref(),
-                tip: workbench.tip.as_ref(),
-                is_changing: !active_wind.is_settled() || !sway.is_settled(),
-            },
-            levels: &mut new_levels,
-            forest: new_forest.as_mut(),
-            level_tables: &workbench.level_tables,
-            is_frozen: &mut workbench.is_frozen,
-            costs: &workbench.costs,
-            tree: &workbench.tree,
-            legend: &workbench.legend,
-            has_turntable: workbench.has_turntable,
-        },
-    );
-    workbench.panel = workbench.ui.panel;
-    workbench.picture = Some((drawn.picture, context.pixels_per_point()));
-    workbench.is_quitting |= drawn.is_quitting;
-    workbench.is_cancelled |= drawn.is_cancelled;
-    season.set_if_neq(new_season);
-    wind.set_if_neq(new_wind);
-    levels.set_if_neq(new_levels);
-    if let Some((mut forest, new)) = forest.zip(new_forest) {
-        forest.set_if_neq(new);
     }
 }

@@ -12,7 +12,8 @@ use super::{
 use crate::{
     editor::{
         diagram::View,
-        session::{Message, Session},
+        file_session::Message,
+        land_pose::LandPose,
         stage::{Arrangement, Stage},
     },
     tree::Season,
@@ -25,6 +26,10 @@ pub enum Panel {
     /// Fields of a species.
     #[default]
     Species,
+    /// The plan of a forest.
+    Woods,
+    /// The ground.
+    Ground,
     /// The wind, and what it is like.
     Wind,
     /// Levels of detail, and what everything costs.
@@ -33,8 +38,19 @@ pub enum Panel {
 
 impl Panel {
     /// All of them, with their names.
-    pub const ALL: [(Self, &'static str); 3] =
-        [(Self::Species, "Species"), (Self::Wind, "Wind"), (Self::Levels, "Levels and cost")];
+    pub const ALL: [(Self, &'static str); 5] = [
+        (Self::Species, "Species"),
+        (Self::Woods, "Woods"),
+        (Self::Ground, "Ground"),
+        (Self::Wind, "Wind"),
+        (Self::Levels, "Levels and cost"),
+    ];
+
+    /// Whether the picture is of a wood or of ground, and not of a tree.
+    #[must_use]
+    pub fn is_of_land(self) -> bool {
+        matches!(self, Self::Woods | Self::Ground)
+    }
 }
 
 /// What is told of the tree that is shown.
@@ -99,49 +115,74 @@ pub fn stage_bar(ui: &mut Ui, stage: &mut Stage, season: &mut Season, wind: &mut
     ui.horizontal(|ui| {
         ui.set_height(ROW);
         let width = (ui.available_width() - 3.0 * 8.0) / 3.0;
-        let before_years = stage.age_share * mature_years;
-        let mut years = before_years;
-        let part = |ui: &mut Ui, name: &str, add: &mut dyn FnMut(&mut Ui, Id)| {
-            ui.allocate_ui_with_layout(vec2(width, ROW), Layout::left_to_right(Align::Center), |ui| {
-                ui.set_width(width);
-                let named = ui.label(name).id;
-                ui.spacing_mut().slider_width = (ui.available_width() - 76.0).max(24.0);
-                add(ui, named);
-            });
-        };
-        part(ui, "Age", &mut |ui, named| {
-            let slider = Slider::new(&mut years, 1.0..=2.0 * mature_years).logarithmic(true);
-            ui.add(bare(slider)).labelled_by(named);
-            ui.add_sized(
-                vec2(64.0, ROW - 4.0),
-                DragValue::new(&mut years)
-                    .range(1.0..=5000.0)
-                    .clamp_existing_to_range(false)
-                    .suffix(" a")
-                    .max_decimals(0),
-            )
-            .labelled_by(named);
-        });
-        if years != before_years {
-            stage.age_share = years / mature_years;
+        age(ui, width, stage, mature_years);
+        season_and_wind(ui, width, season, wind);
+    });
+}
+
+/// The bar under a picture of a wood or of ground: from where it is seen, season and wind.
+pub fn land_bar(ui: &mut Ui, pose: &mut LandPose, season: &mut Season, wind: &mut Wind) {
+    ui.horizontal(|ui| {
+        ui.set_height(ROW);
+        if ui.button("From above").on_hover_text("North is up").clicked() {
+            pose.look_down();
         }
-        part(ui, "Season", &mut |ui, named| {
-            let mut year = season.year;
-            ui.add(bare(Slider::new(&mut year, 0.0..=1.0))).labelled_by(named);
-            if year != season.year {
-                season.year = year;
-            }
-            ui.add_sized(vec2(64.0, ROW - 4.0), Label::new(month(season.year)));
-        });
-        part(ui, "Wind", &mut |ui, named| {
-            let mut speed = wind.speed;
-            ui.add(bare(Slider::new(&mut speed, 0.0..=30.0).step_by(0.5))).labelled_by(named);
-            let drag = DragValue::new(&mut speed).range(0.0..=75.0).suffix(" m/s").max_decimals(1);
-            ui.add_sized(vec2(64.0, ROW - 4.0), drag).labelled_by(named);
-            if speed != wind.speed {
-                wind.speed = speed;
-            }
-        });
+        if ui.button("Aslant").clicked() {
+            pose.look_aslant();
+        }
+        ui.weak(format!("{:.0} m away", pose.distance_m));
+    });
+    ui.horizontal(|ui| {
+        ui.set_height(ROW);
+        let width = (ui.available_width() - 2.0 * 8.0) / 2.0;
+        season_and_wind(ui, width, season, wind);
+    });
+}
+
+/// A name, and controls beside it, in a part of a row.
+fn part(ui: &mut Ui, width: f32, name: &str, add: &mut dyn FnMut(&mut Ui, Id)) {
+    ui.allocate_ui_with_layout(vec2(width, ROW), Layout::left_to_right(Align::Center), |ui| {
+        ui.set_width(width);
+        let named = ui.label(name).id;
+        ui.spacing_mut().slider_width = (ui.available_width() - 76.0).max(24.0);
+        add(ui, named);
+    });
+}
+
+fn age(ui: &mut Ui, width: f32, stage: &mut Stage, mature_years: f32) {
+    let before_years = stage.age_share * mature_years;
+    let mut years = before_years;
+    part(ui, width, "Age", &mut |ui, named| {
+        let slider = Slider::new(&mut years, 1.0..=2.0 * mature_years).logarithmic(true);
+        ui.add(bare(slider)).labelled_by(named);
+        ui.add_sized(
+            vec2(64.0, ROW - 4.0),
+            DragValue::new(&mut years).range(1.0..=5000.0).clamp_existing_to_range(false).suffix(" a").max_decimals(0),
+        )
+        .labelled_by(named);
+    });
+    if years != before_years {
+        stage.age_share = years / mature_years;
+    }
+}
+
+fn season_and_wind(ui: &mut Ui, width: f32, season: &mut Season, wind: &mut Wind) {
+    part(ui, width, "Season", &mut |ui, named| {
+        let mut year = season.year;
+        ui.add(bare(Slider::new(&mut year, 0.0..=1.0))).labelled_by(named);
+        if year != season.year {
+            season.year = year;
+        }
+        ui.add_sized(vec2(64.0, ROW - 4.0), Label::new(month(season.year)));
+    });
+    part(ui, width, "Wind", &mut |ui, named| {
+        let mut speed = wind.speed;
+        ui.add(bare(Slider::new(&mut speed, 0.0..=30.0).step_by(0.5))).labelled_by(named);
+        let drag = DragValue::new(&mut speed).range(0.0..=75.0).suffix(" m/s").max_decimals(1);
+        ui.add_sized(vec2(64.0, ROW - 4.0), drag).labelled_by(named);
+        if speed != wind.speed {
+            wind.speed = speed;
+        }
     });
 }
 
@@ -170,24 +211,16 @@ fn month(year: f32) -> &'static str {
     MONTHS[((day / 365.0 * 12.0) as usize).min(11)]
 }
 
-/// The bar at the bottom: what was done last, and what is shown. Returns whether the growing is to be cancelled.
-pub fn status_bar(ui: &mut Ui, session: &Session, facts: &TreeFacts) -> bool {
+/// The bar at the bottom: what was done last, and what is shown of a tree. Returns whether the growing is to be cancelled.
+pub fn status_bar(ui: &mut Ui, message: Option<&Message>, facts: Option<&TreeFacts>) -> bool {
     let palette = palette(ui.visuals());
     let mut is_cancelled = false;
     ui.horizontal(|ui| {
         ui.set_height(20.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let time = facts.grown_in_ms.map_or_else(String::new, |ms| format!("  ·  grown in {ms:.0} ms"));
-            let counts =
-                format!("{:.1} m  ·  {} beams  ·  {} triangles{time}", facts.height_m, facts.beams, facts.triangles);
-            ui.label(RichText::new(counts).weak());
-            if facts.is_growing {
-                is_cancelled = ui.small_button("Cancel").on_hover_text("Go back to the tree that is shown").clicked();
-                ui.label("Growing");
-                ui.spinner();
-            }
+            is_cancelled = facts.is_some_and(|facts| tree_facts(ui, facts));
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                let (text, colour) = match &session.message {
+                let (text, colour) = match message {
                     Some(Message::Done(text)) => (text.as_str(), palette.good),
                     Some(Message::Failed(text)) => (text.as_str(), palette.bad),
                     None => ("", palette.good),
@@ -197,6 +230,19 @@ pub fn status_bar(ui: &mut Ui, session: &Session, facts: &TreeFacts) -> bool {
             });
         });
     });
+    is_cancelled
+}
+
+fn tree_facts(ui: &mut Ui, facts: &TreeFacts) -> bool {
+    let time = facts.grown_in_ms.map_or_else(String::new, |ms| format!("  ·  grown in {ms:.0} ms"));
+    let counts = format!("{:.1} m  ·  {} beams  ·  {} triangles{time}", facts.height_m, facts.beams, facts.triangles);
+    ui.label(RichText::new(counts).weak());
+    if !facts.is_growing {
+        return false;
+    }
+    let is_cancelled = ui.small_button("Cancel").on_hover_text("Go back to the tree that is shown").clicked();
+    ui.label("Growing");
+    ui.spinner();
     is_cancelled
 }
 

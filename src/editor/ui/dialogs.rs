@@ -5,10 +5,7 @@ use std::path::{Path, PathBuf};
 use bevy_egui::egui::{Button, Context, Grid, Id, Key, Modal, RichText, ScrollArea, TextEdit, Ui};
 
 use super::shortcuts::SHORTCUTS;
-use crate::editor::{
-    session::{Intent, Question, Session},
-    species_file::EXTENSION,
-};
+use crate::editor::file_session::{FileSession, Intent, Question};
 
 /// A dialog that a person asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,17 +29,18 @@ impl PathField {
     fn new(path: &Path) -> Self {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let entries = std::fs::read_dir(folder).into_iter().flatten();
-        let is_species = |path: &PathBuf| {
+        let extension = extension_of(path);
+        let is_of_kind = |path: &PathBuf| {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            name.ends_with(EXTENSION) && !name.starts_with('.')
+            name.ends_with(&extension) && !name.starts_with('.')
         };
-        let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_species).collect();
+        let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_of_kind).collect();
         files.sort();
         Self { path: path.display().to_string(), files }
     }
 
     /// Draws it. Returns whether a file of the list was chosen, or Enter pressed.
-    fn show(&mut self, ui: &mut Ui, named: Id) -> bool {
+    fn show(&mut self, ui: &mut Ui, named: Id, extension: &str) -> bool {
         let edit = ui
             .add(TextEdit::singleline(&mut self.path).desired_width(460.0).hint_text("Path of a file"))
             .labelled_by(named);
@@ -51,7 +49,7 @@ impl PathField {
         ScrollArea::vertical().max_height(260.0).auto_shrink(false).show(ui, |ui| {
             for file in &self.files {
                 let name = file.file_name().unwrap_or_default().to_string_lossy();
-                let name = name.strip_suffix(EXTENSION).unwrap_or(&name).to_owned();
+                let name = name.strip_suffix(extension).unwrap_or(&name).to_owned();
                 let is_this = Path::new(&self.path) == file;
                 let label = ui.selectable_label(is_this, name);
                 if label.clicked() {
@@ -60,7 +58,7 @@ impl PathField {
                 is_chosen |= label.double_clicked();
             }
             if self.files.is_empty() {
-                ui.weak("There are no species in this folder.");
+                ui.weak("There are no such files in this folder.");
             }
         });
         is_chosen
@@ -80,8 +78,8 @@ impl Dialog {
 }
 
 /// Shows the dialog that is open, and the session's question. Returns whether the program is to end.
-pub fn show(context: &Context, session: &mut Session, dialog: &mut Option<Dialog>) -> bool {
-    if let Some(question) = session.question.clone() {
+pub fn show(context: &Context, session: &mut dyn FileSession, dialog: &mut Option<Dialog>) -> bool {
+    if let Some(question) = session.question().cloned() {
         return ask(context, session, &question);
     }
     let Some(open) = dialog else { return false };
@@ -90,13 +88,15 @@ pub fn show(context: &Context, session: &mut Session, dialog: &mut Option<Dialog
         ui.set_width(480.0);
         match open {
             Dialog::Open(field) => {
-                if file_dialog(ui, "Open a species", "Open", field, &mut is_done) {
+                let title = format!("Open: {}", session.name());
+                if file_dialog(ui, (&title, "Open"), field, session.extension(), &mut is_done) {
                     session.open_another(&PathBuf::from(&field.path));
                 }
             }
             Dialog::SaveAs(field) => {
-                if file_dialog(ui, "Save the species as", "Save", field, &mut is_done) {
-                    let path = PathBuf::from(with_extension(&field.path));
+                let title = format!("Save as: {}", session.name());
+                if file_dialog(ui, (&title, "Save"), field, session.extension(), &mut is_done) {
+                    let path = PathBuf::from(with_extension(&field.path, session.extension()));
                     session.save_to(Some(&path));
                 }
             }
@@ -109,15 +109,28 @@ pub fn show(context: &Context, session: &mut Session, dialog: &mut Option<Dialog
     false
 }
 
-/// Files without the ending of species would not be loaded.
-fn with_extension(path: &str) -> String {
-    if path.ends_with(EXTENSION) { path.to_owned() } else { format!("{path}{EXTENSION}") }
+/// Files without the ending of their kind would not be loaded.
+fn with_extension(path: &str, extension: &str) -> String {
+    if path.ends_with(extension) { path.to_owned() } else { format!("{path}{extension}") }
 }
 
-fn file_dialog(ui: &mut Ui, title: &str, action: &str, field: &mut PathField, is_done: &mut bool) -> bool {
+/// The last two parts of a file's name, which tell its kind: `.species.ron`.
+fn extension_of(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let dot = name.rmatch_indices('.').nth(1).map_or(0, |(dot, _)| dot);
+    name[dot..].to_owned()
+}
+
+fn file_dialog(
+    ui: &mut Ui,
+    (title, action): (&str, &str),
+    field: &mut PathField,
+    extension: &str,
+    is_done: &mut bool,
+) -> bool {
     let named = ui.heading(title).id;
     ui.add_space(6.0);
-    let mut is_chosen = field.show(ui, named);
+    let mut is_chosen = field.show(ui, named, extension);
     ui.add_space(6.0);
     ui.horizontal(|ui| {
         is_chosen |= ui.button(RichText::new(action).strong()).clicked();
@@ -138,7 +151,8 @@ fn shortcuts(ui: &mut Ui) -> bool {
         }
         for (keys, what) in [
             ("Tab, arrows", "From control to control; change a slider"),
-            ("Drag, wheel", "Turn the tree; nearer and farther"),
+            ("Drag, wheel", "Turn the view; nearer and farther"),
+            ("Shift+drag", "Shift the view of a wood or of ground"),
         ] {
             ui.label(RichText::new(keys).monospace());
             ui.label(what);
@@ -150,7 +164,7 @@ fn shortcuts(ui: &mut Ui) -> bool {
 }
 
 /// Asks, and does what is answered. Returns whether the program is to end.
-fn ask(context: &Context, session: &mut Session, question: &Question) -> bool {
+fn ask(context: &Context, session: &mut dyn FileSession, question: &Question) -> bool {
     let mut is_quitting = false;
     let modal = Modal::new(Id::new("windwood question")).show(context, |ui| {
         ui.set_width(440.0);
@@ -169,7 +183,7 @@ fn ask(context: &Context, session: &mut Session, question: &Question) -> bool {
                     is_quitting = follow(session, intent);
                 }
                 if ui.button("Cancel").clicked() {
-                    session.question = None;
+                    session.dismiss_question();
                 }
             }
             Question::LoseComments | Question::Overwrite => {
@@ -177,10 +191,10 @@ fn ask(context: &Context, session: &mut Session, question: &Question) -> bool {
                     session.save_to(None);
                 }
                 if ui.button("Cancel").clicked() {
-                    session.question = None;
+                    session.dismiss_question();
                 }
             }
-            Question::Restore(_) => {
+            Question::Restore => {
                 if ui.button(RichText::new("Restore").strong()).clicked() {
                     session.answer_restore(true);
                 }
@@ -191,13 +205,13 @@ fn ask(context: &Context, session: &mut Session, question: &Question) -> bool {
         });
     });
     // Escape is the answer that loses nothing; what was kept stays kept until it is answered.
-    if modal.should_close() && !matches!(question, Question::Restore(_)) {
-        session.question = None;
+    if modal.should_close() && !matches!(question, Question::Restore) {
+        session.dismiss_question();
     }
     is_quitting
 }
 
-fn words(session: &Session, question: &Question) -> (&'static str, String) {
+fn words(session: &dyn FileSession, question: &Question) -> (&'static str, String) {
     let name = session.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
     match question {
         Question::Unsaved(_) => ("Save the changes?", format!("{name} has changes that are not saved.")),
@@ -209,15 +223,15 @@ fn words(session: &Session, question: &Question) -> (&'static str, String) {
             "The file was changed",
             format!("Another program has changed {name} since it was read. Saving would overwrite that."),
         ),
-        Question::Restore(_) => (
+        Question::Restore => (
             "Restore unsaved work?",
             format!("The workbench ended before changes of {name} were saved. They were kept."),
         ),
     }
 }
 
-fn follow(session: &mut Session, intent: &Intent) -> bool {
-    session.question = None;
+fn follow(session: &mut dyn FileSession, intent: &Intent) -> bool {
+    session.dismiss_question();
     match intent {
         Intent::Open(path) => session.open_now(path),
         Intent::Quit => return true,
@@ -238,7 +252,9 @@ mod tests {
 
     #[test]
     fn a_species_gets_its_ending() {
-        assert_eq!(with_extension("a/elm"), "a/elm.species.ron");
-        assert_eq!(with_extension("a/elm.species.ron"), "a/elm.species.ron");
+        assert_eq!(with_extension("a/elm", ".species.ron"), "a/elm.species.ron");
+        assert_eq!(with_extension("a/elm.species.ron", ".species.ron"), "a/elm.species.ron");
+        assert_eq!(extension_of(Path::new("a.b/elm.v2.species.ron")), ".species.ron");
+        assert_eq!(extension_of(Path::new("elm")), "elm");
     }
 }

@@ -11,7 +11,8 @@ use super::{
 use crate::{
     editor::{
         costs::Costs,
-        fields::{Field, Section, copy_at, fields_of, is_same_at},
+        field_table::fields_of,
+        fields::{Field, Section, copy_at, is_same_at},
     },
     forest::ForestSettings,
     render::LevelOfDetail,

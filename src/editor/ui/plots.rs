@@ -1,10 +1,13 @@
 //! Plots that all look alike.
 
-use bevy_egui::egui::{Color32, RichText, Ui};
-use egui_plot::{Corner, GridInput, GridMark, Legend, Line, LineStyle, Plot, PlotPoints, VLine};
+use bevy_egui::egui::{Color32, Rangef, RichText, Ui};
+use egui_plot::{AxisHints, Corner, GridInput, GridMark, Legend, Line, LineStyle, Plot, PlotPoints, VLine};
 
 use super::theme::palette;
 use crate::editor::spectrum::Band;
+
+/// Grid lines nearer than the first have no number, and those farther than the second have one in full strength, points.
+const LABEL_SPACING: Rangef = Rangef { min: 34.0, max: 50.0 };
 
 /// A curve of a plot.
 pub struct Curve<'a> {
@@ -26,6 +29,8 @@ pub struct PlotForm<'a> {
     pub is_logarithmic: bool,
     /// Whether the axis across alone is decades.
     pub has_logarithmic_x: bool,
+    /// Whether curves rise to the right, so that there is room under them.
+    pub rises: bool,
     /// Lines across it: a name and a place.
     pub marks: &'a [(&'static str, f64)],
 }
@@ -39,7 +44,11 @@ pub fn plot(ui: &mut Ui, form: &PlotForm, curves: Vec<Curve>) {
     });
     let [is_log_x, is_log_y] = [form.is_logarithmic || form.has_logarithmic_x, form.is_logarithmic];
     // Spectra and coherences fall: there is room under them.
-    let corner = if is_log_x { Corner::LeftBottom } else { Corner::RightTop };
+    let corner = match (is_log_x, form.rises) {
+        (true, _) => Corner::LeftBottom,
+        (false, true) => Corner::RightBottom,
+        (false, false) => Corner::RightTop,
+    };
     let mut plot = Plot::new(form.title)
         .height(form.height)
         .allow_drag(false)
@@ -50,6 +59,7 @@ pub fn plot(ui: &mut Ui, form: &PlotForm, curves: Vec<Curve>) {
         .show_crosshair(false)
         .set_margin_fraction(bevy_egui::egui::vec2(0.01, 0.06))
         .legend(Legend::default().position(corner).text_style(bevy_egui::egui::TextStyle::Small).background_alpha(0.6));
+    plot = plot.custom_x_axes(vec![AxisHints::new_x().label_spacing(LABEL_SPACING)]);
     if is_log_x {
         plot = plot.x_grid_spacer(decades).x_axis_formatter(|mark, _| power_of_ten(mark));
     }

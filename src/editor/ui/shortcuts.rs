@@ -32,16 +32,18 @@ const fn shortcut(modifiers: Modifiers, key: Key, command: Command, what: &'stat
 const BOTH: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
 
 /// All shortcuts. Those with more modifiers come first, for the others would take their keys.
-pub const SHORTCUTS: [Shortcut; 12] = [
+pub const SHORTCUTS: [Shortcut; 14] = [
     shortcut(BOTH, Key::S, Command::SaveAs, "Save as"),
     shortcut(BOTH, Key::Z, Command::Redo, "Redo"),
-    shortcut(Modifiers::COMMAND, Key::O, Command::Open, "Open a species"),
+    shortcut(Modifiers::COMMAND, Key::O, Command::Open, "Open a file"),
     shortcut(Modifiers::COMMAND, Key::S, Command::Save, "Save"),
     shortcut(Modifiers::COMMAND, Key::Z, Command::Undo, "Undo"),
     shortcut(Modifiers::COMMAND, Key::R, Command::Randomise, "Randomise within natural spread"),
     shortcut(Modifiers::COMMAND, Key::Num1, Command::Panel(0), "Species"),
-    shortcut(Modifiers::COMMAND, Key::Num2, Command::Panel(1), "Wind"),
-    shortcut(Modifiers::COMMAND, Key::Num3, Command::Panel(2), "Levels and cost"),
+    shortcut(Modifiers::COMMAND, Key::Num2, Command::Panel(1), "Woods"),
+    shortcut(Modifiers::COMMAND, Key::Num3, Command::Panel(2), "Ground"),
+    shortcut(Modifiers::COMMAND, Key::Num4, Command::Panel(3), "Wind"),
+    shortcut(Modifiers::COMMAND, Key::Num5, Command::Panel(4), "Levels and cost"),
     shortcut(Modifiers::COMMAND, Key::T, Command::Turn, "Turn the tree, or let it stand"),
     shortcut(Modifiers::NONE, Key::Questionmark, Command::Help, "This list"),
     shortcut(Modifiers::NONE, Key::F2, Command::Close, "Close and open the workbench in a game"),

@@ -113,7 +113,7 @@ fn is_in_menus(crown: &Section, other: &Field) -> bool {
 mod tests {
     use super::*;
     use crate::{
-        editor::fields::fields_of,
+        editor::field_table::fields_of,
         tree::{Growth, Species},
     };
 

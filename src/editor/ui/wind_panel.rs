@@ -9,7 +9,8 @@ use super::{
 };
 use crate::{
     editor::{
-        fields::{Field, Section, copy_at, fields_of, is_same_at},
+        field_table::fields_of,
+        fields::{Field, Section, copy_at, is_same_at},
         stage::Stage,
         tip_motion::TipMotion,
         wind_measures::{COMPONENTS, Comparison, WindMeasures},

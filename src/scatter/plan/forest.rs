@@ -200,12 +200,16 @@ impl Area {
     }
 
     /// Side of a quadrat, m: chosen, or so that it holds one plant on average.
-    pub(in crate::scatter) fn quadrat_side_m(&self) -> f32 {
+    #[must_use]
+    pub fn quadrat_side_m(&self) -> f32 {
         if self.quadrat_m > 0.0 { self.quadrat_m } else { (1.0 / self.density_per_m2().sqrt()).min(LARGEST_QUADRAT_M) }
     }
 
     /// The law of the number of plants in a quadrat.
-    pub(in crate::scatter) fn law(&self) -> Result<CountLaw, SettingError> {
+    ///
+    /// # Errors
+    /// [`SettingError`] where nothing grows, or the pattern is not possible at this density.
+    pub fn law(&self) -> Result<CountLaw, SettingError> {
         self.pattern.with_mean(self.plants_in_quadrat())
     }
 }

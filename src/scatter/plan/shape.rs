@@ -58,6 +58,22 @@ impl Shape {
     }
 }
 
+impl Shape {
+    /// The rectangle around it: least and greatest corner (x, z), m. For a shape that is valid.
+    #[must_use]
+    pub fn bounds_m(&self) -> [Place; 2] {
+        Region::new(self).bounds().map(|corner| corner.as_vec2().to_array())
+    }
+
+    /// The shares of the area's density at places (x, z), m, each 0 to 1. For a shape that is valid.
+    pub fn coverage<'a>(&self, places: impl IntoIterator<Item = DVec2> + 'a) -> impl Iterator<Item = f32> + 'a {
+        let region = Region::new(self);
+        let [min, max] = region.bounds();
+        let is_inside = move |at: DVec2| at.cmpge(min).all() && at.cmple(max).all();
+        places.into_iter().map(move |at| if is_inside(at) { region.coverage(at) } else { 0.0 })
+    }
+}
+
 /// A shape, prepared for queries.
 #[derive(Clone, Debug)]
 pub(in crate::scatter) enum Region {
@@ -91,5 +107,22 @@ impl Region {
             Self::Polygon(polygon) => f32::from(u8::from(polygon.contains(at))),
             Self::Mask(mask) => mask.coverage(at),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_cover_what_is_inside_and_nothing_beyond() {
+        let corners_m = vec![[0.0, 0.0], [30.0, 0.0], [30.0, 10.0], [10.0, 10.0], [10.0, 30.0], [0.0, 30.0]];
+        let corner = Shape::Polygon { corners_m };
+        assert_eq!(corner.bounds_m(), [[0.0, 0.0], [30.0, 30.0]]);
+        let places = [(5.0, 25.0), (20.0, 20.0), (-1.0, 5.0), (f64::NAN, 5.0)].map(DVec2::from);
+        assert_eq!(corner.coverage(places).collect::<Vec<_>>(), [1.0, 0.0, 0.0, 0.0]);
+        let mask = Shape::Mask { min_m: [0.0; 2], max_m: [10.0; 2], rows: vec!["9".into()] };
+        let places = [(5.0, 5.0), (10.0, 10.0), (10.1, 5.0)].map(DVec2::from);
+        assert_eq!(mask.coverage(places).collect::<Vec<_>>(), [1.0, 1.0, 0.0]);
     }
 }

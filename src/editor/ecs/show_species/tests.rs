@@ -11,7 +11,7 @@ fn app() -> (tempfile::TempDir, App, Entity) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("oak.species.ron");
     std::fs::write(&path, include_str!("../../../../assets/species/oak.species.ron")).unwrap();
-    let mut workbench = Workbench::new(Some(path.as_path()), true);
+    let mut workbench = Workbench::new(Some(path.as_path()), None, None, true);
     workbench.is_open = true;
     let mut app = App::new();
     app.add_plugins((TaskPoolPlugin::default(), AssetPlugin::default(), TreePlugin))
@@ -92,7 +92,7 @@ fn a_tree_that_is_being_grown_can_be_cancelled() {
     app.update();
     let workbench = app.world().resource::<Workbench>();
     assert_eq!(*workbench.species(), good);
-    assert_eq!(workbench.session.history().undo_step(), Some("Cancel"));
+    assert_eq!(workbench.session.undo_step(), Some("Cancel"));
 }
 
 #[test]

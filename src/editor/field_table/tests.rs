@@ -1,5 +1,6 @@
 use super::*;
 use crate::{
+    editor::fields::all_fields,
     tree::{Growth, Species, crown::impressionist::ImpressionistCrown, growth::zaharia},
     wind::FieldSettings,
 };

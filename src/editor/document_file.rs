@@ -1,4 +1,4 @@
-//! The file of a species: read, saved without loss, and looked after.
+//! The file of what is edited: read, saved without loss, and looked after.
 
 use std::{
     fs, io,
@@ -9,16 +9,11 @@ use ron::{Options, extensions::Extensions, ser::PrettyConfig};
 use thiserror::Error;
 
 use super::{
+    document::Document,
     ron_merge::{Merged, merge},
     ron_tree::has_comments,
 };
-use crate::{
-    file_write::replace_file,
-    tree::{Species, SpeciesError},
-};
-
-/// How files of species end.
-pub const EXTENSION: &str = ".species.ron";
+use crate::file_write::replace_file;
 
 /// Why a file was not opened or saved.
 #[derive(Debug, Error)]
@@ -26,19 +21,19 @@ pub enum FileError {
     /// It cannot be read or written.
     #[error("{}: {error}", path.display())]
     Disk { path: PathBuf, error: io::Error },
-    /// It is not a species.
+    /// It is not what it should be.
     #[error("{}: {error}", path.display())]
-    Content { path: PathBuf, error: SpeciesError },
-    /// The species cannot be written as RON.
-    #[error("the species cannot be written: {0}")]
+    Content { path: PathBuf, error: String },
+    /// It cannot be written as RON.
+    #[error("it cannot be written: {0}")]
     Writing(#[from] ron::Error),
 }
 
-/// A species as it was last read from its file or saved there.
+/// Settings as they were last read from their file or saved there.
 #[derive(Clone, Debug)]
-pub struct SpeciesFile {
+pub struct DocumentFile<T> {
     pub path: PathBuf,
-    pub species: Species,
+    pub document: T,
     /// The file's text; none if there is no file yet.
     text: Option<String>,
 }
@@ -52,20 +47,20 @@ pub enum OnDisk {
     Removed,
 }
 
-impl SpeciesFile {
+impl<T: Document> DocumentFile<T> {
     /// Reads a file.
     ///
     /// # Errors
-    /// Where it cannot be read, or is not a species.
+    /// Where it cannot be read, or is not what it should be.
     pub fn open(path: &Path) -> Result<Self, FileError> {
         let text = fs::read_to_string(path).map_err(|error| FileError::Disk { path: path.to_owned(), error })?;
-        let species = Species::from_ron(&text).map_err(|error| FileError::Content { path: path.to_owned(), error })?;
-        Ok(Self { path: path.to_owned(), species, text: Some(text) })
+        let document = T::read(&text).map_err(|error| FileError::Content { path: path.to_owned(), error })?;
+        Ok(Self { path: path.to_owned(), document, text: Some(text) })
     }
 
-    /// A species that has no file yet, and the one that it will have.
-    pub fn new(path: &Path, species: Species) -> Self {
-        Self { path: path.to_owned(), species, text: None }
+    /// Settings that have no file yet, and the one that they will have.
+    pub fn new(path: &Path, document: T) -> Self {
+        Self { path: path.to_owned(), document, text: None }
     }
 
     /// Whether there is a file of it.
@@ -73,33 +68,33 @@ impl SpeciesFile {
         self.text.is_some()
     }
 
-    /// What saving this species would write: the person's own text with what has changed; all anew where that does not work.
+    /// What saving would write: the person's own text with what has changed; all anew where that does not work.
     ///
     /// # Errors
     /// Where the RON crate cannot write it.
-    pub fn text_of(&self, species: &Species) -> Result<Merged, FileError> {
+    pub fn text_of(&self, document: &T) -> Result<Merged, FileError> {
         let Some(own) = &self.text else {
-            return Ok(Merged { text: written(species)?, loses_comments: false });
+            return Ok(Merged { text: written(document)?, loses_comments: false });
         };
-        if *species == self.species {
+        if *document == self.document {
             return Ok(Merged { text: own.clone(), loses_comments: false });
         }
-        let new = written(species)?;
-        let merged = merge(own, &written(&self.species)?, &new);
-        let reads_back = |merged: &Merged| Species::from_ron(&merged.text).is_ok_and(|read| read == *species);
+        let new = written(document)?;
+        let merged = merge(own, &written(&self.document)?, &new);
+        let reads_back = |merged: &Merged| T::read(&merged.text).is_ok_and(|read| read == *document);
         let anew = || Merged { text: new.clone(), loses_comments: has_comments(own) };
         Ok(merged.filter(reads_back).unwrap_or_else(anew))
     }
 
-    /// Saves a species, to another path if one is given.
+    /// Saves it, to another path if one is given.
     ///
     /// # Errors
     /// Where it cannot be written: the file is as it was before.
-    pub fn save(&mut self, species: &Species, path: Option<&Path>) -> Result<(), FileError> {
-        let text = self.text_of(species)?.text;
+    pub fn save(&mut self, document: &T, path: Option<&Path>) -> Result<(), FileError> {
+        let text = self.text_of(document)?.text;
         let path = path.unwrap_or(&self.path).to_owned();
         replace_file(&path, text.as_bytes()).map_err(|error| FileError::Disk { path: path.clone(), error })?;
-        *self = Self { path, species: species.clone(), text: Some(text) };
+        *self = Self { path, document: document.clone(), text: Some(text) };
         Ok(())
     }
 
@@ -123,15 +118,15 @@ impl SpeciesFile {
     ///
     /// # Errors
     /// Where it cannot be written.
-    pub fn autosave(&self, species: &Species) -> Result<(), FileError> {
+    pub fn autosave(&self, document: &T) -> Result<(), FileError> {
         let path = self.autosave_path();
-        replace_file(&path, written(species)?.as_bytes()).map_err(|error| FileError::Disk { path, error })
+        replace_file(&path, written(document)?.as_bytes()).map_err(|error| FileError::Disk { path, error })
     }
 
-    /// Work that was kept and never saved. It may break rules of a species that has been changed in between: then it is not offered.
-    pub fn autosaved(&self) -> Option<Species> {
+    /// Work that was kept and never saved. It may break rules that have been changed in between: then it is not offered.
+    pub fn autosaved(&self) -> Option<T> {
         let text = fs::read_to_string(self.autosave_path()).ok()?;
-        Species::from_ron(&text).ok().filter(|species| *species != self.species)
+        T::read(&text).ok().filter(|document| *document != self.document)
     }
 
     /// Forgets work that was kept: it is saved, or not wanted.
@@ -141,11 +136,11 @@ impl SpeciesFile {
     }
 }
 
-/// A species as RON, in the form of the shipped ones.
-fn written(species: &Species) -> Result<String, ron::Error> {
+/// Settings as RON, in the form of the shipped files.
+fn written<T: Document>(document: &T) -> Result<String, ron::Error> {
     let extensions = Extensions::UNWRAP_VARIANT_NEWTYPES | Extensions::IMPLICIT_SOME;
     let form = PrettyConfig::new().new_line("\n".to_owned()).separate_tuple_members(false);
-    let mut text = Options::default().with_default_extension(extensions).to_string_pretty(species, form)?;
+    let mut text = Options::default().with_default_extension(extensions).to_string_pretty(document, form)?;
     text.push('\n');
     Ok(text)
 }
