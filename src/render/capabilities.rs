@@ -52,7 +52,7 @@ impl RenderCapabilities {
         let culls_on_gpu = render_world
             .get_resource::<GpuPreprocessingSupport>()
             .is_some_and(|support| support.max_supported_mode == GpuPreprocessingMode::Culling);
-        // Poses have two halves, and half as many again in reserve.
+        // Poses have two halves, and less than half as many again in reserve.
         let max_table_bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let max_poses = u32::try_from(max_table_bytes / (3 * POSE_BYTES as u64)).unwrap_or(u32::MAX);
         let features = render_world.get_resource::<RenderDevice>()?.features();
