@@ -36,6 +36,7 @@ use super::{
     species::{
         library::{SpeciesLibrary, SpeciesPrepared, VariantRemoved},
         load_parts::{PartLoads, finish_loading_parts, start_loading_parts},
+        mesh_copies::{MeshCopies, drop_mesh_copies},
         prepare::{PreparationQueue, finish_preparing_species, remove_prepared_species, start_preparing_species},
         tree_material::{SwayExtension, SwayMaterial},
     },
@@ -76,6 +77,7 @@ impl Plugin for TreeRenderPlugin {
             .init_resource::<SpeciesLibrary>()
             .init_resource::<PreparationQueue>()
             .init_resource::<PartLoads>()
+            .init_resource::<MeshCopies>()
             .init_resource::<InstanceTables>()
             .init_resource::<LostMeshes>()
             .init_resource::<WaitingTrees>()
@@ -93,6 +95,7 @@ impl Plugin for TreeRenderPlugin {
 
         let prepare = timed!(
             app,
+            drop_mesh_copies,
             start_preparing_species,
             remove_prepared_species,
             finish_preparing_species,

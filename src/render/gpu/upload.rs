@@ -127,11 +127,11 @@ pub(crate) struct Uploads<'w> {
 
 impl Uploads<'_> {
     /// Grows the buffer of poses, with a reserve. It has a half for the last frame from the first camera on that asks for motion vectors.
-    fn grow_poses(&mut self, tables: &mut InstanceTables, needs_previous: bool) {
+    fn grow_poses(&mut self, tables: &mut InstanceTables, most_poses: u32, needs_previous: bool) {
         let state = &mut *self.state;
         let (poses, gets_half) = (tables.pose_count(), needs_previous && !state.has_previous_half);
         if poses > state.pose_capacity {
-            state.pose_capacity = with_reserve(poses);
+            state.pose_capacity = with_reserve(poses).min(most_poses).max(poses);
         } else if !gets_half {
             return;
         }
@@ -181,7 +181,7 @@ pub(crate) fn upload_frame(
     season: Res<Season>,
     viewers: Res<LodViewers>,
     (sources, pushers, live): (Res<WindSources>, Res<Pushers>, Res<LiveUploads>),
-    moving: Query<(), With<MotionVectorPrepass>>,
+    (capabilities, moving): (Res<RenderCapabilities>, Query<(), With<MotionVectorPrepass>>),
     mut tables: ResMut<InstanceTables>,
     mut uploads: Uploads,
     mut dispatch: ResMut<PoseDispatch>,
@@ -193,7 +193,7 @@ pub(crate) fn upload_frame(
     uploads.tables.upload(&shared.trees, &mut tables.trees);
     uploads.tables.upload(&shared.beams, &mut tables.beams);
     uploads.tables.upload(&workgroups, &mut tables.workgroups.table);
-    uploads.grow_poses(tables, !moving.is_empty());
+    uploads.grow_poses(tables, capabilities.max_poses, !moving.is_empty());
 
     let state = &mut *uploads.state;
     let [blend, previous_blend] = sway.blends();

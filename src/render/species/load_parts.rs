@@ -6,6 +6,7 @@
 use super::{
     library::SpeciesLibrary,
     lod_meshes::{LevelRecipe, LodMeshes, remade_level},
+    mesh_copies::MeshCopies,
     part_set::{LevelPart, PartSet},
 };
 use crate::{
@@ -64,6 +65,7 @@ pub(crate) fn finish_loading_parts(
     mut library: ResMut<SpeciesLibrary>,
     mut loads: ResMut<PartLoads>,
     mut meshes: ResMut<Assets<Mesh>>,
+    mut copies: ResMut<MeshCopies>,
 ) {
     let mut left = FINISHED_PER_FRAME;
     let library = library.bypass_change_detection();
@@ -81,7 +83,7 @@ pub(crate) fn finish_loading_parts(
             let parts = [(LevelPart::Wood, Some(wood)), (LevelPart::BareWood, bare_wood), (LevelPart::Leaves, leaves)];
             for (part, mesh) in parts {
                 if let Some(mesh) = mesh.and_then(|part| part.mesh) {
-                    variant.set_mesh(level, part, Some(meshes.add(mesh)));
+                    variant.set_mesh(level, part, Some(copies.add(mesh, &mut meshes)));
                 }
             }
         }

@@ -5,6 +5,7 @@ pub(crate) mod library;
 pub(crate) mod load_parts;
 pub(crate) mod lod_meshes;
 pub(crate) mod materials;
+pub(crate) mod mesh_copies;
 pub(crate) mod packed_vertices;
 pub(crate) mod part_demand;
 pub(crate) mod part_set;

@@ -159,8 +159,9 @@ mod tests {
             let scale_m = 2.0_f32.powf(random.random_range(-7.0..7.0));
             let reach_m = scale_m * Vec3::from_array([(); 3].map(|()| random.random_range(-1.0..1.0)));
             let error_m = (unpacked_reach_m(packed_reach(reach_m)) - reach_m).abs().max_element();
-            // Half of a 127th, of a length that is a 127th of eight doublings too long at most.
-            let bound_m = 0.5 / 127.0 * 2.0_f32.powf(8.0 / 127.0) * reach_m.abs().max_element();
+            // Half of a 127th, of a length that is a 127th of eight doublings too long at most; the shortest is 2^-8 m.
+            let longest_m = reach_m.abs().max_element();
+            let bound_m = 0.5 / 127.0 * (2.0_f32.powf(8.0 / 127.0) * longest_m).max(2.0_f32.powi(-8));
             assert!(error_m <= 1.001 * bound_m, "{reach_m} is off by {error_m} m");
         }
         assert_eq!(unpacked_reach_m(packed_reach(Vec3::ZERO)), Vec3::ZERO, "the vertex where a leaf hangs");

@@ -6,6 +6,7 @@ use super::{
     },
     lod_meshes::{LevelRecipe, LodMeshes, MeshPart, SpeciesMeshes, VariantMeshes, species_meshes},
     materials::{MaterialAssets, SpeciesMaterials},
+    mesh_copies::MeshCopies,
     part_demand::PartDemand,
     part_set::PartSet,
 };
@@ -109,6 +110,7 @@ pub(crate) fn remove_prepared_species(
 #[derive(SystemParam)]
 pub(crate) struct PreparedAssets<'w> {
     meshes: ResMut<'w, Assets<Mesh>>,
+    copies: ResMut<'w, MeshCopies>,
     models: Res<'w, Assets<TreeModel>>,
     exposure: Res<'w, WindExposure>,
     materials: MaterialAssets<'w>,
@@ -167,7 +169,7 @@ impl PreparedAssets<'_> {
     fn add_lod(&mut self, lod: LodMeshes, species: &SpeciesMaterials) -> PreparedLod {
         let LodMeshes { wood, bare_wood, leaves, is_wood_nested } = lod;
         let mut add = |MeshPart { mesh, material }: MeshPart| PreparedMesh {
-            mesh: mesh.map(|mesh| self.meshes.add(mesh)),
+            mesh: mesh.map(|mesh| self.copies.add(mesh, &mut self.meshes)),
             can_fade: material.can_fade(),
             bare_materials: self.materials.when_bare(&material, species),
             materials: self.materials.of_mesh(material, species),
