@@ -203,7 +203,7 @@ fn mesh(positions: &[[f32; 3]], normals: &[[f32; 3]], uvs: &[[f32; 2]], indices:
 mod tests {
     use super::*;
     use crate::{
-        lod::LEAST_LEAF_SHARE,
+        lod::{Decimation, LEAST_LEAF_SHARE},
         tree::{Growth, MOST_ENLARGED, crown::impressionist::ImpressionistCrown},
     };
 
@@ -232,7 +232,10 @@ mod tests {
     fn only_what_is_wanted_and_the_coarsest_level_are_made_at_first() {
         let species = Species { variants: 1, ..Species::default() };
         let model = TreeModel::bake(&species, 60.0, 2);
-        let recipe = LevelRecipe { species, ..LevelRecipe::default() };
+        // So much that a bare tree needs some of it back.
+        let decimations = vec![Decimation { least_radius_m: 0.3, leaf_share: 0.5 }; 2];
+        let bake = LodBakeSettings { decimations, ..LodBakeSettings::default() };
+        let recipe = LevelRecipe { species, bake, ..LevelRecipe::default() };
         let made = |wanted: PartSet| -> Vec<[bool; 3]> {
             let meshes = species_meshes(&recipe, false, &[model.clone()], wanted);
             let is_made = |part: Option<&MeshPart>| part.is_some_and(|part| part.mesh.is_some());
@@ -240,7 +243,8 @@ mod tests {
             meshes.variants[0].lods.iter().map(parts).collect()
         };
         assert_eq!(made(PartSet::EMPTY), [[false; 3], [false; 3], [true, false, true]]);
-        let bare = PartSet::one(2, LevelPart::BareWood);
-        assert_eq!(made(bare.and(PartSet::in_leaf(0))), [[true, false, true], [false; 3], [true; 3]]);
+        let bare = PartSet::one(1, LevelPart::BareWood);
+        let expected = [[true, false, true], [false, true, false], [true, false, true]];
+        assert_eq!(made(bare.and(PartSet::in_leaf(0))), expected);
     }
 }
