@@ -40,4 +40,6 @@ pub use screen_size::{Lens, LodScreenSizes};
 #[cfg(all(test, feature = "render"))]
 pub(crate) use settings::LEAST_LEAF_SHARE;
 pub use settings::{Decimation, EnvelopeSettings, ImpostorSettings, LodBakeSettings, MOST_LEVELS};
+#[cfg(feature = "render")]
+pub(crate) use thinned::thinned;
 pub use thinned::{ThinnedMeshes, thinned_meshes};

@@ -38,17 +38,20 @@ struct SeasonalDecimation {
 /// Crowns of polygons have the polygons of the distance at which the level begins, on a usual camera's picture.
 #[must_use]
 pub fn thinned_meshes(species: &Species, model: &TreeModel, settings: &LodBakeSettings) -> Vec<ThinnedMeshes> {
-    let bearable = settings.decimations.iter().map(|wanted| bearable(species, model, wanted));
-    let thinned = bearable.enumerate().map(|(number, decimation)| {
-        let mut meshes = decimate(model, &decimation.in_leaf);
-        if let Growth::Impressionist(crown) = &species.growth {
-            let begin_m = LodScreenSizes::default().distances_of_three_m(crown.height_m, Lens::default())[number];
-            meshes.leaves = leaves_at(crown, &model.skeleton, begin_m);
-        }
-        let bare_wood = decimation.bare_radius_m.map(|radius_m| thick_wood(&model.wood, &model.skeleton, radius_m));
-        ThinnedMeshes { meshes, bare_wood }
-    });
-    thinned.collect()
+    let levels = settings.decimations.iter().enumerate();
+    levels.map(|(number, wanted)| thinned(species, model, number, wanted)).collect()
+}
+
+/// One of them: the level of that number, from 0.
+pub(crate) fn thinned(species: &Species, model: &TreeModel, number: usize, wanted: &Decimation) -> ThinnedMeshes {
+    let decimation = bearable(species, model, wanted);
+    let mut meshes = decimate(model, &decimation.in_leaf);
+    if let Growth::Impressionist(crown) = &species.growth {
+        let begin_m = LodScreenSizes::default().distances_of_three_m(crown.height_m, Lens::default())[number];
+        meshes.leaves = leaves_at(crown, &model.skeleton, begin_m);
+    }
+    let bare_wood = decimation.bare_radius_m.map(|radius_m| thick_wood(&model.wood, &model.skeleton, radius_m));
+    ThinnedMeshes { meshes, bare_wood }
 }
 
 /// As much of a decimation as a tree bears.

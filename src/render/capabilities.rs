@@ -52,9 +52,9 @@ impl RenderCapabilities {
         let culls_on_gpu = render_world
             .get_resource::<GpuPreprocessingSupport>()
             .is_some_and(|support| support.max_supported_mode == GpuPreprocessingMode::Culling);
-        // Poses have two halves, and half as many again in reserve.
+        // Poses may have two halves, and their reserve ends where the device can bind no more.
         let max_table_bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let max_poses = u32::try_from(max_table_bytes / (3 * POSE_BYTES as u64)).unwrap_or(u32::MAX);
+        let max_poses = u32::try_from(max_table_bytes / (2 * POSE_BYTES as u64)).unwrap_or(u32::MAX);
         let features = render_world.get_resource::<RenderDevice>()?.features();
         let reads_compressed_textures = features.contains(WgpuFeatures::TEXTURE_COMPRESSION_BC);
         Some(Self { sways, culls_on_gpu, max_poses, reads_compressed_textures, max_table_bytes })

@@ -10,6 +10,7 @@ use super::{
         layers::copy_render_layers,
         mesh_entities::update_tree_meshes,
         removal::{LostMeshes, note_lost_mesh, remove_tree_meshes, restore_lost_meshes},
+        waiting::{WaitingTrees, redraw_waiting_trees},
     },
     gpu::{
         live_upload::{LiveUploads, upload_live_trees},
@@ -28,11 +29,14 @@ use super::{
         select::select_lods,
         thresholds::LodSelection,
         viewers::{LodViewers, update_lod_viewers},
+        want_parts::want_parts,
     },
     settings::{ActiveLevelOfDetail, LevelOfDetail, apply_level_of_detail},
     shader_files::load_shaders,
     species::{
         library::{SpeciesLibrary, SpeciesPrepared, VariantRemoved},
+        load_parts::{PartLoads, finish_loading_parts, start_loading_parts},
+        mesh_copies::{MeshCopies, drop_mesh_copies},
         prepare::{PreparationQueue, finish_preparing_species, remove_prepared_species, start_preparing_species},
         tree_material::{SwayExtension, SwayMaterial},
     },
@@ -72,8 +76,11 @@ impl Plugin for TreeRenderPlugin {
             .init_resource::<TreeLights>()
             .init_resource::<SpeciesLibrary>()
             .init_resource::<PreparationQueue>()
+            .init_resource::<PartLoads>()
+            .init_resource::<MeshCopies>()
             .init_resource::<InstanceTables>()
             .init_resource::<LostMeshes>()
+            .init_resource::<WaitingTrees>()
             .init_resource::<SwayBuffers>()
             .init_resource::<UploadState>()
             .init_resource::<PackedWind>()
@@ -88,9 +95,11 @@ impl Plugin for TreeRenderPlugin {
 
         let prepare = timed!(
             app,
+            drop_mesh_copies,
             start_preparing_species,
             remove_prepared_species,
             finish_preparing_species,
+            finish_loading_parts,
             update_wind_exposure
         );
         let draw = timed!(
@@ -102,6 +111,9 @@ impl Plugin for TreeRenderPlugin {
             apply_level_of_detail,
             update_lod_viewers,
             select_lods,
+            want_parts,
+            redraw_waiting_trees,
+            start_loading_parts,
             restore_lost_meshes,
             redraw_bare_trees,
             update_tree_meshes,

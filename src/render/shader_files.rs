@@ -14,6 +14,7 @@ pub(crate) fn load_shaders(app: &mut App) {
     load_shader_library!(app, "shaders/leaf.wesl");
     load_shader_library!(app, "shaders/lighting.wesl");
     load_shader_library!(app, "shaders/lod.wesl");
+    load_shader_library!(app, "shaders/packed_vertex.wesl");
     load_shader_library!(app, "shaders/prepass_output.wesl");
     load_shader_library!(app, "shaders/rotation.wesl");
     load_shader_library!(app, "shaders/season.wesl");

@@ -42,7 +42,7 @@ const EYE_HEIGHT_M: f32 = 30.0;
 /// Frames before the measurement.
 const WARM_UP_FRAMES: u32 = 20;
 /// Longest wait for a forest, s.
-const TIMEOUT_S: f64 = 120.0;
+const TIMEOUT_S: f64 = 600.0;
 
 /// Measures frames of forests of up to that many trees, and writes a picture of each.
 pub fn run(frames: u32, most_trees: u32, folder: &Path) -> Report {

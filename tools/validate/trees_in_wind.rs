@@ -1,7 +1,7 @@
 //! What whole trees do in the wind beside what others have measured: frequencies, damping, how loads grow, how far trees lean.
 
 use crate::report::Report;
-use bevy::math::Mat3;
+use bevy::math::{Mat3, Vec3};
 use bevy_windwood::{
     dynamics::{BeamPose, BeamSway, TreeInWind, TreePoser},
     sway::{SwaySettings, WindResponse},

@@ -5,9 +5,9 @@ const MAX_GAP_ROWS: u32 = 16;
 /// Capacity of the first buffer, rows.
 const FIRST_CAPACITY: u32 = 256;
 
-/// The capacity for so many rows: half as many again, so that a growing table seldom needs another buffer.
+/// The capacity for so many rows: an eighth as many again, so that a growing table seldom needs another buffer.
 pub(crate) fn with_reserve(count: u32) -> u32 {
-    count + count / 2
+    count + count / 8
 }
 
 /// Rows, and which of them were written since the last upload.
@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn the_reserve_ends_where_the_device_cannot_bind_more() {
         let mut table = DirtyTable::<u32>::limited(1100);
-        for (length, capacity) in [(100, FIRST_CAPACITY), (600, 900), (1000, 1100), (1100, 1100)] {
+        for (length, capacity) in [(100, FIRST_CAPACITY), (600, 675), (1000, 1100), (1100, 1100)] {
             table.grow_to(length);
             table.grow_capacity();
             assert_eq!(table.capacity, capacity, "{length}");

@@ -16,7 +16,8 @@ pub(crate) const FRAME_BYTES: u64 = 2800;
 /// The handles stay the same. Buffers grow, and Bevy binds materials anew by itself when they do.
 #[derive(Resource, Clone)]
 pub struct SwayBuffers {
-    /// `array<BeamPose>`: a half for this frame and one for the last frame, which change places each frame.
+    /// `array<BeamPose>`: a half for this frame and one for the last frame, which change places each frame. That of the last frame is there
+    /// once a camera has had a `MotionVectorPrepass`.
     pub poses: Handle<ShaderBuffer>,
     /// `array<BeamRow>`.
     pub beams: Handle<ShaderBuffer>,
@@ -24,7 +25,7 @@ pub struct SwayBuffers {
     pub trees: Handle<ShaderBuffer>,
     /// One `Frame`.
     pub frame: Handle<ShaderBuffer>,
-    /// `array<vec4<f32>>`: the winds of slot A and B, between which `frame` says how to fade.
+    /// `array<vec4<u32>>`: the winds of slot A and B, between which `frame` says how to fade.
     pub winds: [Handle<ShaderBuffer>; 2],
 }
 

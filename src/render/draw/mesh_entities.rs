@@ -4,6 +4,7 @@
 use super::{
     components::{DrawnTree, TreeMeshOf, TreeMeshes, TreePart},
     layers::insert_layers_and_culling,
+    waiting::{DrawnLevels, WaitingTrees},
 };
 use crate::{
     render::{
@@ -31,12 +32,13 @@ type Drawn = (
     Option<&'static TreeMeshes>,
 );
 
-/// Draws the levels that were selected for trees.
+/// Draws the levels that were selected for trees, or others until these are there. The first that is seen of a tree is what was selected.
 pub(crate) fn update_tree_meshes(
     mut commands: Commands,
     library: Res<SpeciesLibrary>,
     capabilities: Res<RenderCapabilities>,
     season: Res<Season>,
+    mut waiting: ResMut<WaitingTrees>,
     mut trees: Query<Drawn, Or<(Changed<LodSelection>, Changed<TreeInstance>, Changed<DrawnTree>)>>,
     mut visibilities: Query<&mut Visibility, With<TreeMeshOf>>,
 ) {
@@ -47,6 +49,7 @@ pub(crate) fn update_tree_meshes(
         if before == Some(*selection) {
             continue;
         }
+        let is_new = meshes.is_none();
         let meshes = meshes.into_iter().flat_map(TreeMeshes::iter);
         let is_same = |before: &LodSelection| (before.lod, before.is_fading) == (selection.lod, selection.is_fading);
         if before.as_ref().is_some_and(is_same) {
@@ -64,13 +67,21 @@ pub(crate) fn update_tree_meshes(
             drawn.bypass_change_detection().selection = Some(*selection);
             continue;
         }
-        meshes.for_each(|mesh| commands.entity(mesh).despawn());
         let is_bare = library.is_bare(tree.species.id(), season.wrapped() + tree.season_shift());
+        let levels = DrawnLevels::of(variant, selection, is_bare);
+        if !levels.is_complete {
+            waiting.0.push(entity);
+            if is_new {
+                continue;
+            }
+        }
+        meshes.for_each(|mesh| commands.entity(mesh).despawn());
         let spawner = MeshSpawner {
             tree: entity,
             instance: &instance,
             variant,
             selection,
+            levels,
             has_impostor,
             is_bare,
             layers,
@@ -100,6 +111,7 @@ struct MeshSpawner<'a> {
     instance: &'a TreeInstance,
     variant: &'a PreparedVariant,
     selection: &'a LodSelection,
+    levels: DrawnLevels,
     has_impostor: bool,
     is_bare: bool,
     layers: Option<&'a RenderLayers>,
@@ -107,15 +119,15 @@ struct MeshSpawner<'a> {
 }
 
 impl MeshSpawner<'_> {
-    /// Spawns the selected level, and the one that it fades into. Returns the number of meshes.
+    /// Spawns a level, and the one that it fades into. Returns the number of meshes.
     fn spawn(&self, commands: &mut Commands) -> u8 {
-        let LodSelection { lod, is_fading, .. } = *self.selection;
+        let lod = self.levels.first;
         let Some(level) = self.variant.lods.get(usize::from(lod)) else { return 0 };
-        let next = self.variant.lods.get(usize::from(lod) + 1).filter(|_| is_fading);
+        let next = self.levels.next.and_then(|next| self.variant.lods.get(usize::from(next)));
         let wood_of = |level| PreparedLod::wood(level, self.is_bare);
         let next_wood = next.filter(|next| !next.is_wood_nested).map(wood_of);
         let next_leaves = next.and_then(|next| next.leaves.as_ref());
-        let fading = if is_fading { Fading::OUT } else { self.end_of(lod) };
+        let fading = if next.is_some() { Fading::OUT } else { self.end_of(lod) };
         let next_fading = Fading::IN.and(self.end_of(lod + 1));
         let meshes = [
             (TreePart::Wood, Some(wood_of(level)), lod, fading),
@@ -125,8 +137,8 @@ impl MeshSpawner<'_> {
         ];
         let mut count = 0;
         for (part, mesh, lod, fading) in meshes {
-            let Some(mesh) = mesh else { continue };
-            self.spawn_mesh(part, mesh, lod, fading, commands);
+            let Some((mesh, handle)) = mesh.and_then(|mesh| Some((mesh, mesh.mesh.as_ref()?))) else { continue };
+            self.spawn_mesh(part, mesh, handle, lod, fading, commands);
             count += 1;
         }
         count
@@ -138,14 +150,22 @@ impl MeshSpawner<'_> {
     }
 
     /// Spawns a mesh with all that it needs at once, since each insertion moves an entity in memory.
-    fn spawn_mesh(&self, part: TreePart, mesh: &PreparedMesh, lod: u8, fading: Fading, commands: &mut Commands) {
+    fn spawn_mesh(
+        &self,
+        part: TreePart,
+        mesh: &PreparedMesh,
+        handle: &Handle<Mesh>,
+        lod: u8,
+        fading: Fading,
+        commands: &mut Commands,
+    ) {
         let row = self.instance.row;
         let fading = if mesh.can_fade && row.is_some() { fading } else { Fading::NONE };
         let tag = pack_tag(row.unwrap_or(0), lod, fading, self.instance.tint);
         // The box holds all poses in the winds that blow; the mesh's own would cull a tree that leans into the view.
         let entity = (
             (TreeMeshOf(self.tree), ChildOf(self.tree), part, mesh_visibility(self.selection)),
-            (Mesh3d(mesh.mesh.clone()), MeshTag::new(tag), self.variant.bounds),
+            (Mesh3d(handle.clone()), MeshTag::new(tag), self.variant.bounds),
         );
         let materials = mesh.materials(self.is_bare);
         let mut spawned = match &materials.swaying {

@@ -7,3 +7,4 @@ pub(crate) mod counts;
 pub(crate) mod layers;
 pub(crate) mod mesh_entities;
 pub(crate) mod removal;
+pub(crate) mod waiting;

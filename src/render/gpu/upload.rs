@@ -28,6 +28,7 @@ use crate::{
 };
 use bevy::{
     asset::RenderAssetUsages,
+    core_pipeline::prepass::MotionVectorPrepass,
     ecs::system::SystemParam,
     prelude::*,
     render::storage::ShaderBuffer,
@@ -41,6 +42,8 @@ pub(crate) struct UploadState {
     workgroups: Handle<ShaderBuffer>,
     /// Poses that a half of the buffer holds.
     pose_capacity: u32,
+    /// Whether there is a half for the last frame.
+    has_previous_half: bool,
     /// Whether the first half is this frame's.
     is_first_half: bool,
     /// The winds in the slots A and B.
@@ -56,6 +59,7 @@ impl FromWorld for UploadState {
         Self {
             workgroups: empty_buffer(&mut world.resource_mut::<Assets<ShaderBuffer>>()),
             pose_capacity: 0,
+            has_previous_half: false,
             is_first_half: false,
             winds: [None, None],
             posed: None,
@@ -73,7 +77,7 @@ impl FromWorld for PoseDispatch {
     }
 }
 
-/// The incoming wind's tables as one buffer, packed in the background: they are some 20 MB.
+/// The incoming wind's tables as one buffer, packed in the background: they are some 10 MB.
 #[derive(Resource, Default)]
 pub(crate) struct PackedWind(Option<(Arc<WindResponse>, Packing)>);
 
@@ -122,12 +126,21 @@ pub(crate) struct Uploads<'w> {
 }
 
 impl Uploads<'_> {
-    /// Grows the buffer of poses, with a reserve.
-    fn grow_poses(&mut self, poses: u32) {
-        if poses > self.state.pose_capacity {
-            self.state.pose_capacity = with_reserve(poses);
-            self.tables.replace(&self.shared.poses, 2 * u64::from(self.state.pose_capacity) * POSE_BYTES as u64);
+    /// Grows the buffer of poses, with a reserve. It has a half for the last frame from the first camera on that asks for motion vectors.
+    fn grow_poses(&mut self, tables: &mut InstanceTables, most_poses: u32, needs_previous: bool) {
+        let state = &mut *self.state;
+        let (poses, gets_half) = (tables.pose_count(), needs_previous && !state.has_previous_half);
+        if poses > state.pose_capacity {
+            state.pose_capacity = with_reserve(poses).min(most_poses).max(poses);
+        } else if !gets_half {
+            return;
         }
+        state.has_previous_half |= gets_half;
+        if gets_half {
+            state.posed = None;
+        }
+        tables.pose_capacity = state.pose_capacity * if state.has_previous_half { 2 } else { 1 };
+        self.tables.replace(&self.shared.poses, u64::from(tables.pose_capacity.max(1)) * POSE_BYTES as u64);
     }
 }
 
@@ -168,6 +181,7 @@ pub(crate) fn upload_frame(
     season: Res<Season>,
     viewers: Res<LodViewers>,
     (sources, pushers, live): (Res<WindSources>, Res<Pushers>, Res<LiveUploads>),
+    (capabilities, moving): (Res<RenderCapabilities>, Query<(), With<MotionVectorPrepass>>),
     mut tables: ResMut<InstanceTables>,
     mut uploads: Uploads,
     mut dispatch: ResMut<PoseDispatch>,
@@ -179,13 +193,14 @@ pub(crate) fn upload_frame(
     uploads.tables.upload(&shared.trees, &mut tables.trees);
     uploads.tables.upload(&shared.beams, &mut tables.beams);
     uploads.tables.upload(&workgroups, &mut tables.workgroups.table);
-    uploads.grow_poses(tables.pose_count());
+    uploads.grow_poses(tables, capabilities.max_poses, !moving.is_empty());
 
     let state = &mut *uploads.state;
     let [blend, previous_blend] = sway.blends();
     state.is_first_half = !state.is_first_half;
     dispatch.workgroups = tables.workgroups.table.len();
-    dispatch.is_previous_due = has_new_rows || state.posed != Some((clock.previous_s, previous_blend));
+    let is_posed = !has_new_rows && state.posed == Some((clock.previous_s, previous_blend));
+    dispatch.is_previous_due = state.has_previous_half && !is_posed;
     state.posed = Some((clock.time_s, blend));
     let mut row = frame_row(&sway, &clock, &season, &viewers, state, dispatch.workgroups);
     [row.live_now, row.live_before] = live.halves();
@@ -206,7 +221,11 @@ fn frame_row(
         slot.map_or(0.0, |response| wrapped_time_s(response, time_s) as f32)
     };
     let (now, before) = (clock.time_s, clock.previous_s);
-    let halves = if state.is_first_half { [0, state.pose_capacity] } else { [state.pose_capacity, 0] };
+    let halves = match (state.has_previous_half, state.is_first_half) {
+        (false, _) => [0, 0],
+        (true, true) => [0, state.pose_capacity],
+        (true, false) => [state.pose_capacity, 0],
+    };
     let mut row = FrameRow {
         time_s: [seconds(a, now), seconds(b, now), seconds(a, before), seconds(b, before)],
         blend: sway.blends(),

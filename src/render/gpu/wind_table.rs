@@ -11,7 +11,11 @@ use crate::{
 /// Rows of `vec4` before where each row of the table is; `HEADER` of `render/shaders/wind.wesl`.
 const HEADER: usize = 8;
 
-/// One wind as the shaders read it, in rows of `vec4`: header, where each row of the table is, direction map, responses, velocities.
+/// Samples of series in a `vec4`: four halves each.
+const SAMPLES_A_ROW: usize = 2;
+
+/// One wind as the shaders read it, in rows of `vec4`: header, where each row of the table is, direction map, responses, velocities. The two
+/// last have half precision: a share of 2^-11 of what is rounded.
 pub(crate) fn pack_wind(wind: &WindResponse) -> Vec<u8> {
     let (frame, table, map) = (wind.field.frame(), &wind.table, wind.basis.map());
     let (mean, grid) = (wind.mean_wind, table.grid);
@@ -39,16 +43,69 @@ pub(crate) fn pack_wind(wind: &WindResponse) -> Vec<u8> {
     let first = HEADER + table.rows.len() + 1 + 4 * map.size() * map.size();
     let velocities = TableRow { first: table.values.len(), samples: table.samples, is_high: false };
     let rows = table.rows.iter().copied().chain([velocities]);
-    // Whole numbers that an f32 holds exactly: 2^24 rows would be more than any device binds.
+    // Whole numbers that an f32 holds exactly: 2^24 samples would be 128 MB.
+    let first = SAMPLES_A_ROW * first;
     let rows: Vec<[f32; 4]> = rows
         .map(|row| [(first + row.first) as f32, row.samples as f32, f32::from(u8::from(row.is_high)), 0.0])
         .collect();
-    let parts: [&[u8]; 5] = [
+    let series = table.values.iter().chain(&table.velocities);
+    let mut samples: Vec<[u16; 4]> = series.map(|sample| sample.to_array().map(half_bits)).collect();
+    samples.resize(samples.len().next_multiple_of(SAMPLES_A_ROW), [0; 4]);
+    let parts: [&[u8]; 4] = [
         bytemuck::cast_slice(&header),
         bytemuck::cast_slice(&rows),
         bytemuck::cast_slice(map.texels()),
-        bytemuck::cast_slice(&table.values),
-        bytemuck::cast_slice(&table.velocities),
+        bytemuck::cast_slice(&samples),
     ];
     parts.concat()
+}
+
+/// Greatest number in half precision, and the least one with all its digits.
+const MOST_HALF: f32 = 65_504.0;
+const LEAST_NORMAL_HALF: f32 = 1.0 / 16_384.0;
+
+/// The bits of the nearest number in half precision (IEEE 754 binary16), of two equally near ones that which is even. What is too large or no
+/// number becomes the greatest.
+fn half_bits(value: f32) -> u16 {
+    let sign = if value.is_sign_negative() { 0x8000 } else { 0 };
+    let magnitude = value.abs().min(MOST_HALF);
+    if magnitude < LEAST_NORMAL_HALF {
+        // Multiples of 2^-24; the last of them is the least normal number, whose bits follow theirs.
+        return sign | (magnitude * 16_777_216.0).round_ties_even() as u16;
+    }
+    let bits = magnitude.to_bits();
+    let rounded = bits + 0x0fff + (bits >> 13 & 1);
+    // The exponents' biases are 127 and 15.
+    sign | ((rounded - (112 << 23)) >> 13) as u16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The number that bits in half precision stand for.
+    fn value(bits: u16) -> f32 {
+        let (exponent, fraction) = (i32::from(bits >> 10 & 31), f32::from(bits & 1023));
+        let magnitude = match exponent {
+            0 => fraction * 2.0_f32.powi(-24),
+            _ => (1.0 + fraction / 1024.0) * 2.0_f32.powi(exponent - 15),
+        };
+        if bits >> 15 == 1 { -magnitude } else { magnitude }
+    }
+
+    #[test]
+    fn all_halves_are_their_own_nearest_and_midpoints_go_to_even_ones() {
+        for bits in (0..0x7c00_u16).chain(0x8000..0xfc00) {
+            assert_eq!(half_bits(value(bits)), bits);
+            if bits & 0x7fff < 0x7bff {
+                let middle = 0.5 * (value(bits) + value(bits + 1));
+                assert_eq!(half_bits(middle), bits + (bits & 1), "{middle}");
+                assert_eq!(half_bits(middle * (1.0 - 1e-6)), bits);
+                assert_eq!(half_bits(middle * (1.0 + 1e-6)), bits + 1);
+            }
+        }
+        for bad in [f32::NAN, f32::INFINITY, 1e30, 65_520.0] {
+            assert_eq!(half_bits(bad) & 0x7fff, 0x7bff);
+        }
+    }
 }

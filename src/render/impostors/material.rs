@@ -12,8 +12,9 @@ use crate::{
         lighting::{LitAsTrees, TreeLights},
         pipeline::{set_constants, shade_what_is_seen, specialize, tell_of_sun_shadow},
         species::tree_material::SeasonUniform,
-        texture_image::{ALL_MIPS, compressed_image, image},
+        texture_image::{ALL_MIPS, Channels, compressed_image, image},
     },
+    texture::TextureData,
     tree::Species,
 };
 use bevy::{
@@ -118,9 +119,13 @@ pub(crate) struct AtlasImages {
 
 impl AtlasImages {
     pub fn new(atlas: &ImpostorAtlas, sways: Vec<ImpostorSway>, summer: [f32; 3], compresses_textures: bool) -> Self {
-        let image = if compresses_textures { compressed_image } else { image };
-        let [colour, surface, outline] = [&atlas.colour, &atlas.surface, &atlas.coverage]
-            .map(|texture| image(texture, ImageAddressMode::ClampToEdge, ALL_MIPS));
+        let image = |texture: &TextureData, channels| match compresses_textures {
+            true => compressed_image(texture, channels, ImageAddressMode::ClampToEdge, ALL_MIPS),
+            false => image(texture, ImageAddressMode::ClampToEdge, ALL_MIPS),
+        };
+        let colour = image(&atlas.colour, Channels::Rgb);
+        let surface = image(&atlas.surface, Channels::Rgba);
+        let outline = image(&atlas.coverage, Channels::Red);
         Self {
             colour,
             surface,

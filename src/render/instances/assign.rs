@@ -5,7 +5,7 @@ use crate::{
     render::{
         capabilities::RenderCapabilities,
         settings::ActiveLevelOfDetail,
-        species::library::{SpeciesLibrary, SpeciesPrepared, VariantRemoved},
+        species::library::{PreparedVariant, SpeciesLibrary, SpeciesPrepared, VariantRemoved},
     },
     tree::{Grown, Tree, TreeModel},
 };
@@ -15,7 +15,7 @@ use bevy::{ecs::system::SystemParam, prelude::*};
 #[derive(SystemParam)]
 pub(crate) struct Assigner<'w, 's> {
     commands: Commands<'w, 's>,
-    library: Res<'w, SpeciesLibrary>,
+    library: ResMut<'w, SpeciesLibrary>,
     models: Res<'w, Assets<TreeModel>>,
     capabilities: Res<'w, RenderCapabilities>,
     tables: ResMut<'w, InstanceTables>,
@@ -23,7 +23,7 @@ pub(crate) struct Assigner<'w, 's> {
 }
 
 /// Gives an instance to every tree that has got a new model: to so many a frame of those that have none yet, and to the others at once,
-/// for the meshes that they have may be gone.
+/// for the meshes that they have may be gone; but a tree that grows keeps its meshes until those of the same levels are there.
 pub(crate) fn assign_instances(
     settings: Res<ActiveLevelOfDetail>,
     mut prepared: MessageReader<SpeciesPrepared>,
@@ -32,8 +32,10 @@ pub(crate) fn assign_instances(
     assigned: Query<(Entity, &Tree, &Grown, &TreeInstance)>,
     regrown: Query<Entity, (Changed<Grown>, With<TreeInstance>)>,
     mut due: Local<Vec<Entity>>,
+    mut waiting: Local<Vec<Entity>>,
 ) {
     due.clear();
+    due.append(&mut waiting);
     due.extend(&regrown);
     let prepared: Vec<SpeciesPrepared> = prepared.read().copied().collect();
     if !prepared.is_empty() {
@@ -41,11 +43,15 @@ pub(crate) fn assign_instances(
             instance.model != grown.model.id() || assigner.is_replaced(&prepared, tree, grown)
         };
         due.extend(assigned.iter().filter(is_outdated).map(|(entity, ..)| entity));
-        due.sort_unstable();
-        due.dedup();
     }
-    for (entity, tree, grown, _) in due.drain(..).filter_map(|tree| assigned.get(tree).ok()) {
-        assigner.assign(entity, tree, grown);
+    due.sort_unstable();
+    due.dedup();
+    for (entity, tree, grown, instance) in due.drain(..).filter_map(|tree| assigned.get(tree).ok()) {
+        if assigner.has_levels_of_former(tree, grown, instance) {
+            assigner.assign(entity, tree, grown);
+        } else {
+            waiting.push(entity);
+        }
     }
     // The first meshes of a tree take twice as long as others.
     let mut left = settings.0.changes_per_frame.div_ceil(2);
@@ -63,6 +69,17 @@ impl Assigner<'_, '_> {
         let mut replaced = prepared.iter().filter(|it| it.is_replaced && it.species == species).peekable();
         let variant = replaced.peek().and_then(|_| self.library.variant(species, grown.model.id()));
         variant.is_some_and(|variant| replaced.any(|it| it.age_step == variant.age_step))
+    }
+
+    /// Whether the meshes that a tree's former model has on the GPU are there of its new one, too. From now on they are wanted.
+    fn has_levels_of_former(&mut self, tree: &Tree, grown: &Grown, former: &TreeInstance) -> bool {
+        let (species, model) = (tree.species.id(), grown.model.id());
+        let library = self.library.bypass_change_detection();
+        let there = library.variant(species, former.model).map(PreparedVariant::parts_there);
+        let (Some(there), Some(next)) = (there, library.variant_mut(species, model)) else { return true };
+        let wanted = next.all_parts().common(there);
+        next.demand.want(wanted);
+        next.parts_there().contains(wanted)
     }
 
     /// Gives a tree an instance, if its model is prepared. Returns whether it was. The row of an instance that it had before is freed

@@ -61,7 +61,7 @@ pub(crate) struct FrameRow {
     pub blend: [f32; 2],
     /// Now and one frame ago in the period of the leaves' flutter, s.
     pub leaf_time_s: [f32; 2],
-    /// First pose of this frame's half and of the last frame's.
+    /// First pose of this frame's half and of the last frame's; the same where there is one half, for no camera asks for motion vectors.
     pub poses_now: u32,
     pub poses_before: u32,
     /// 1 once there is a wind, 0 before.
@@ -154,8 +154,8 @@ impl TreeRow {
     }
 }
 
-/// Size of a `BeamPose` of the shader: three vec4.
-pub(crate) const POSE_BYTES: usize = 48;
+/// Size of a `BeamPose` of the shader: two vec4.
+pub(crate) const POSE_BYTES: usize = 32;
 
 /// Cameras whose picture sizes the shaders know.
 pub(crate) const MAX_VIEWERS: usize = 8;

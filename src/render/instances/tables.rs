@@ -9,11 +9,7 @@ use super::{
     tag::MAX_ROWS,
     workgroups::PoseWorkgroups,
 };
-use crate::{
-    render::buffers::dirty_table::{DirtyTable, with_reserve},
-    tree::TreeModel,
-    wind::Canopy,
-};
+use crate::{render::buffers::dirty_table::DirtyTable, tree::TreeModel, wind::Canopy};
 use bevy::{platform::collections::HashMap, prelude::*};
 use offset_allocator::{Allocation, Allocator};
 
@@ -35,6 +31,8 @@ pub(crate) struct InstanceTables {
     pose_ranges: Allocator,
     /// Poses that are in use, or have been.
     pose_end: u32,
+    /// Poses that the GPU buffer holds, in all its halves.
+    pub pose_capacity: u32,
     /// Whether a visible tree has no poses, and whether some were freed since.
     lacks_poses: bool,
     freed_poses: bool,
@@ -85,6 +83,7 @@ impl InstanceTables {
             beam_ranges: Allocator::with_max_allocs(max_beams, MAX_MODELS),
             pose_ranges: Allocator::with_max_allocs(max_poses, MAX_ROWS),
             pose_end: 0,
+            pose_capacity: 0,
             lacks_poses: false,
             freed_poses: false,
         }
@@ -239,9 +238,9 @@ impl InstanceTables {
         self.free_rows.push(row);
     }
 
-    /// Size of the tables on the GPU, bytes: both halves of the poses, with their reserve.
+    /// Size of the tables on the GPU, bytes.
     pub fn bytes(&self) -> usize {
-        let poses = 2 * with_reserve(self.pose_end) as usize * POSE_BYTES;
+        let poses = self.pose_capacity as usize * POSE_BYTES;
         self.trees.bytes() + self.beams.bytes() + self.workgroups.table.bytes() + poses
     }
 

@@ -3,3 +3,4 @@
 pub(crate) mod select;
 pub(crate) mod thresholds;
 pub(crate) mod viewers;
+pub(crate) mod want_parts;

@@ -1,7 +1,7 @@
 //! Selects the LOD levels of trees.
 
 use super::{
-    thresholds::{LodSelection, LodThresholds},
+    thresholds::{LodDistance, LodSelection, LodThresholds},
     viewers::LodViewers,
 };
 use crate::render::{
@@ -60,7 +60,18 @@ fn select(
     impostor: Option<&HasImpostor>,
     before: Option<LodSelection>,
 ) -> LodSelection {
-    let (distance, thresholds): (_, &LodThresholds) = (viewers.distance(at.translation()), &viewers.thresholds);
+    select_at(viewers.distance(at.translation()), &viewers.thresholds, instance, at, impostor, before)
+}
+
+/// The selection for a tree at a distance.
+pub(super) fn select_at(
+    distance: LodDistance,
+    thresholds: &LodThresholds,
+    instance: &TreeInstance,
+    at: &GlobalTransform,
+    impostor: Option<&HasImpostor>,
+    before: Option<LodSelection>,
+) -> LodSelection {
     let (height_m, count) = (instance.height_m * at.affine().matrix3.y_axis.length(), instance.lod_count);
     match (instance.row, impostor.and_then(|impostor| impostor.from_m)) {
         (None, _) => thresholds.select_without_fade(distance.scaled_m, height_m, count, before),

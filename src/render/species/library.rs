@@ -1,11 +1,17 @@
 //! The prepared species: for each variant of a tree, the meshes and materials of its LOD levels.
 
-use super::materials::{MeshMaterials, SpeciesMaterials};
+use super::{
+    lod_meshes::LevelRecipe,
+    materials::{MeshMaterials, SpeciesMaterials},
+    part_demand::PartDemand,
+    part_set::{LevelPart, PartSet},
+};
 use crate::{
     render::wind_exposure::WindExposure,
     tree::{Species, TreeModel, phenology::Phenology},
 };
 use bevy::{camera::primitives::Aabb, platform::collections::HashMap, prelude::*};
+use std::sync::Arc;
 
 /// All species, as far as they have been prepared.
 #[derive(Resource, Default)]
@@ -31,6 +37,12 @@ pub(crate) struct PreparedVariant {
     /// Box around all its poses in the winds that blow, tree-local, m.
     pub bounds: Aabb,
     pub height_m: f32,
+    /// How its meshes are made again.
+    pub recipe: Arc<LevelRecipe>,
+    /// Meshes that stay on the GPU: those of the coarsest level, which stand for all others until these are there.
+    pub kept: PartSet,
+    /// Meshes that trees want.
+    pub demand: PartDemand,
 }
 
 /// One LOD level of a variant.
@@ -44,20 +56,85 @@ pub(crate) struct PreparedLod {
 }
 
 impl PreparedLod {
-    /// The wood of a tree in leaf, or of a bare one.
+    /// The wood of a tree in leaf, or of a bare one, as far as that is on the GPU.
     pub fn wood(&self, is_bare: bool) -> &PreparedMesh {
-        self.bare_wood.as_ref().filter(|_| is_bare).unwrap_or(&self.wood)
+        self.bare_wood.as_ref().filter(|wood| is_bare && wood.mesh.is_some()).unwrap_or(&self.wood)
+    }
+
+    fn part_mut(&mut self, part: LevelPart) -> Option<&mut PreparedMesh> {
+        match part {
+            LevelPart::Wood => Some(&mut self.wood),
+            LevelPart::BareWood => self.bare_wood.as_mut(),
+            LevelPart::Leaves => self.leaves.as_mut(),
+        }
+    }
+
+    fn part(&self, part: LevelPart) -> Option<&PreparedMesh> {
+        match part {
+            LevelPart::Wood => Some(&self.wood),
+            LevelPart::BareWood => self.bare_wood.as_ref(),
+            LevelPart::Leaves => self.leaves.as_ref(),
+        }
     }
 }
 
 /// A mesh with its material.
 pub(crate) struct PreparedMesh {
-    pub mesh: Handle<Mesh>,
+    /// None while it is not on the GPU.
+    pub mesh: Option<Handle<Mesh>>,
     pub materials: MeshMaterials,
     /// Those of a bare tree, where they are others.
     pub bare_materials: Option<MeshMaterials>,
     /// Whether its shader can draw it in part.
     pub can_fade: bool,
+}
+
+impl PreparedVariant {
+    /// All meshes that it may have.
+    pub fn all_parts(&self) -> PartSet {
+        self.parts(|_| true)
+    }
+
+    /// Those that are on the GPU, or on their way.
+    pub fn parts_there(&self) -> PartSet {
+        self.parts(|mesh| mesh.mesh.is_some())
+    }
+
+    fn parts(&self, of: impl Fn(&PreparedMesh) -> bool) -> PartSet {
+        let mut parts = PartSet::EMPTY;
+        for (level, lod) in self.lods.iter().enumerate() {
+            for part in LevelPart::ALL.into_iter().filter(|part| lod.part(*part).is_some_and(&of)) {
+                parts = parts.and(PartSet::one(level, part));
+            }
+        }
+        parts
+    }
+
+    /// What is drawn of a level.
+    pub fn parts_of(&self, level: u8, is_bare: bool) -> PartSet {
+        let level = usize::from(level);
+        let Some(lod) = self.lods.get(level) else { return PartSet::EMPTY };
+        let wood = if is_bare && lod.bare_wood.is_some() { LevelPart::BareWood } else { LevelPart::Wood };
+        let leaves = if lod.leaves.is_some() { PartSet::one(level, LevelPart::Leaves) } else { PartSet::EMPTY };
+        PartSet::one(level, wood).and(leaves)
+    }
+
+    /// Puts a mesh in its place, or none.
+    pub fn set_mesh(&mut self, level: usize, part: LevelPart, mesh: Option<Handle<Mesh>>) {
+        if let Some(prepared) = self.lods.get_mut(level).and_then(|lod| lod.part_mut(part)) {
+            prepared.mesh = mesh;
+        }
+    }
+
+    /// Ends a round of demand: frees what no tree has wanted for long.
+    pub fn end_round(&mut self) {
+        let unwanted = self.demand.end_round(self.parts_there()).without(self.kept);
+        for level in (0..self.lods.len()).filter(|level| unwanted.has_level(*level)) {
+            for part in LevelPart::ALL.into_iter().filter(|part| unwanted.contains(PartSet::one(level, *part))) {
+                self.set_mesh(level, part, None);
+            }
+        }
+    }
 }
 
 /// Message: a species is prepared at one age.
@@ -77,6 +154,22 @@ pub(crate) struct VariantRemoved(pub AssetId<TreeModel>);
 impl SpeciesLibrary {
     pub fn variant(&self, species: AssetId<Species>, model: AssetId<TreeModel>) -> Option<&PreparedVariant> {
         self.species.get(&species)?.variants.get(&model)
+    }
+
+    pub fn variant_mut(
+        &mut self,
+        species: AssetId<Species>,
+        model: AssetId<TreeModel>,
+    ) -> Option<&mut PreparedVariant> {
+        self.species.get_mut(&species)?.variants.get_mut(&model)
+    }
+
+    /// All variants of all species.
+    pub fn variants_mut(
+        &mut self,
+    ) -> impl Iterator<Item = (AssetId<Species>, AssetId<TreeModel>, &mut PreparedVariant)> {
+        let species = self.species.iter_mut();
+        species.flat_map(|(id, prepared)| prepared.variants.iter_mut().map(|(model, variant)| (*id, *model, variant)))
     }
 
     /// Whether a tree of a species has no leaves at that time of its year.

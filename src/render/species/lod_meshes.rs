@@ -2,12 +2,13 @@
 
 use super::{
     images::{SpeciesImages, repeating_image},
-    tree_material::{ATTRIBUTE_LEAF_ANCHOR, ATTRIBUTE_LEAF_AXIS, ATTRIBUTE_SWAY},
+    packed_vertices::{pack_leaves, pack_wood},
+    part_set::{LevelPart, PartSet},
 };
 use crate::{
     lod::{
         CrossedPolygons, EnvelopeLevel, EnvelopeVertices, LodBakeSettings, Scene, ThinnedMeshes, crossed_polygons,
-        thinned_meshes,
+        thinned,
     },
     render::settings::LevelStyle,
     tree::{
@@ -21,7 +22,16 @@ use bevy::{
     mesh::{Indices, PrimitiveTopology},
     prelude::*,
 };
-use std::sync::Arc;
+
+/// What the levels of a species are made of, and how.
+#[derive(Default)]
+pub(crate) struct LevelRecipe {
+    pub species: Species,
+    pub style: LevelStyle,
+    pub bake: LodBakeSettings,
+    /// Whether the device reads textures in blocks.
+    pub compresses_textures: bool,
+}
 
 /// The meshes of a species at one age.
 pub(crate) struct SpeciesMeshes {
@@ -49,7 +59,8 @@ pub(crate) struct LodMeshes {
 
 /// A mesh and its kind of material.
 pub(crate) struct MeshPart {
-    pub mesh: Mesh,
+    /// None where it was not asked for.
+    pub mesh: Option<Mesh>,
     pub material: MaterialKind,
 }
 
@@ -72,133 +83,127 @@ impl MaterialKind {
     }
 }
 
-/// Makes the LOD levels of a style for each variant; with `has_images`, the textures of the species too.
+/// Makes the LOD levels of a recipe for each variant; with `has_images`, the textures of the species too. Of the parts that can be made
+/// again ([`remade_level`]) only those are made that are `wanted`, and the coarsest level.
 pub(crate) fn species_meshes(
-    species: &Species,
+    recipe: &LevelRecipe,
     has_images: bool,
-    models: Vec<TreeModel>,
-    style: LevelStyle,
-    settings: &LodBakeSettings,
+    models: &[TreeModel],
+    wanted: PartSet,
 ) -> SpeciesMeshes {
-    let textures = (has_images || style == LevelStyle::Paper).then(|| species_textures(species));
-    let levels = |model: TreeModel| match (style, &textures) {
-        (LevelStyle::Paper, Some(textures)) => paper_levels(species, model, textures, settings),
-        (LevelStyle::Thinned, _) => thinned_levels(species, model, settings),
-        (LevelStyle::Full | LevelStyle::Paper, _) => vec![full_level(model, MaterialKind::Bark)],
+    let LevelRecipe { species, style, .. } = recipe;
+    let textures = (has_images || *style == LevelStyle::Paper).then(|| species_textures(species));
+    let levels = |model: &TreeModel| match (style, &textures) {
+        (LevelStyle::Paper, Some(textures)) => paper_levels(recipe, model, textures),
+        (LevelStyle::Thinned, _) => {
+            let last = recipe.bake.decimations.len();
+            let wanted = wanted.and(PartSet::in_leaf(last));
+            (0..=last).map(|level| remade_level(recipe, model, level, wanted)).collect()
+        }
+        (LevelStyle::Full | LevelStyle::Paper, _) => {
+            vec![full_level(model, MaterialKind::Bark, PartSet::in_leaf(0))]
+        }
     };
-    let variant = |model: TreeModel| VariantMeshes { height_m: model.height_m(), lods: levels(model) };
-    let variants = models.into_iter().map(variant).collect();
-    SpeciesMeshes { images: textures.filter(|_| has_images).as_ref().map(SpeciesImages::from), variants }
+    let variant = |model: &TreeModel| VariantMeshes { height_m: model.height_m(), lods: levels(model) };
+    let variants = models.iter().map(variant).collect();
+    let images = textures.filter(|_| has_images);
+    SpeciesMeshes { images: images.map(|it| SpeciesImages::new(&it, recipe.compresses_textures)), variants }
 }
 
-fn full_level(model: TreeModel, bark: MaterialKind) -> LodMeshes {
+/// A level of [`LevelStyle::Thinned`] with the meshes of those of its parts that are wanted: the tree itself, or a thinned one. Only the last
+/// bark fades, into the impostor. Between the others no more than twigs thinner than a pixel is left out.
+pub(crate) fn remade_level(recipe: &LevelRecipe, model: &TreeModel, level: usize, wanted: PartSet) -> LodMeshes {
+    let LevelRecipe { species, bake, .. } = recipe;
+    let bark = || if level == bake.decimations.len() { MaterialKind::FadingBark } else { MaterialKind::Bark };
+    let decimation = level.checked_sub(1).and_then(|number| Some((number, bake.decimations.get(number)?)));
+    let Some((number, decimation)) = decimation else { return full_level(model, bark(), wanted) };
+    let wants = |part| wanted.contains(PartSet::one(level, part));
+    let ThinnedMeshes { meshes, bare_wood } = thinned(species, model, number, decimation);
+    let wood = |wood: WoodVertices, part| MeshPart { mesh: wants(part).then(|| wood_mesh(&wood)), material: bark() };
+    LodMeshes {
+        wood: wood(meshes.wood, LevelPart::Wood),
+        bare_wood: bare_wood.map(|it| wood(it, LevelPart::BareWood)),
+        leaves: foliage(&meshes.leaves, wants(LevelPart::Leaves)),
+        is_wood_nested: true,
+    }
+}
+
+fn full_level(model: &TreeModel, bark: MaterialKind, wanted: PartSet) -> LodMeshes {
+    let wants = |part| wanted.contains(PartSet::one(0, part));
     LodMeshes {
         bare_wood: None,
-        wood: MeshPart { mesh: wood_mesh(Arc::unwrap_or_clone(model.wood)), material: bark },
-        leaves: foliage(Arc::unwrap_or_clone(model.leaves)),
+        wood: MeshPart { mesh: wants(LevelPart::Wood).then(|| wood_mesh(&model.wood)), material: bark },
+        leaves: foliage(&model.leaves, wants(LevelPart::Leaves)),
         is_wood_nested: false,
     }
 }
 
-fn foliage(leaves: LeafVertices) -> Option<MeshPart> {
-    (!leaves.indices.is_empty()).then(|| MeshPart { mesh: leaf_mesh(leaves), material: MaterialKind::Foliage })
-}
-
-/// The tree itself, and thinned ones. Only the last bark fades, into the impostor. Between the others no more than twigs thinner than a
-/// pixel is left out.
-fn thinned_levels(species: &Species, model: TreeModel, settings: &LodBakeSettings) -> Vec<LodMeshes> {
-    let last = settings.decimations.len();
-    let thinned = thinned_meshes(species, &model, settings).into_iter().enumerate().map(|(number, level)| {
-        let wood = |wood: WoodVertices| MeshPart {
-            mesh: wood_mesh(wood),
-            material: if number + 1 == last { MaterialKind::FadingBark } else { MaterialKind::Bark },
-        };
-        let ThinnedMeshes { meshes, bare_wood } = level;
-        LodMeshes {
-            wood: wood(meshes.wood),
-            bare_wood: bare_wood.map(wood),
-            leaves: foliage(meshes.leaves),
-            is_wood_nested: true,
-        }
-    });
-    let mut levels: Vec<LodMeshes> = thinned.collect();
-    let first = if last == 0 { MaterialKind::FadingBark } else { MaterialKind::Bark };
-    levels.insert(0, full_level(model, first));
-    levels
+fn foliage(leaves: &LeafVertices, is_wanted: bool) -> Option<MeshPart> {
+    let part = || MeshPart { mesh: is_wanted.then(|| leaf_mesh(leaves)), material: MaterialKind::Foliage };
+    (!leaves.indices.is_empty()).then(part)
 }
 
 /// The paper's: trunk and envelope, then four polygons.
-fn paper_levels(
-    species: &Species,
-    model: TreeModel,
-    textures: &SpeciesTextures,
-    settings: &LodBakeSettings,
-) -> Vec<LodMeshes> {
-    let scene = Scene::new(species, &model, textures);
-    let cylinder = EnvelopeLevel::bake(&scene, species, &model, &settings.envelope);
-    let four = crossed_polygons(&scene, &model, cylinder.as_ref());
+fn paper_levels(recipe: &LevelRecipe, model: &TreeModel, textures: &SpeciesTextures) -> Vec<LodMeshes> {
+    let scene = Scene::new(&recipe.species, model, textures);
+    let cylinder = EnvelopeLevel::bake(&scene, &recipe.species, model, &recipe.bake.envelope);
+    let four = crossed_polygons(&scene, model, cylinder.as_ref());
     drop(scene);
     let colours = [four.colours.first(), four.colours.last()].map(|colour| colour.copied().unwrap_or([0.1; 3]));
-    let low = MeshPart { mesh: plain_mesh(four), material: MaterialKind::TwoColours(colours) };
+    let low = MeshPart { mesh: Some(plain_mesh(&four)), material: MaterialKind::TwoColours(colours) };
     let medium = cylinder.map(|EnvelopeLevel { envelope, trunk, colour, frames: images, .. }| {
         let material = MaterialKind::Envelope(Box::new(repeating_image(&colour)));
         LodMeshes {
-            wood: MeshPart { mesh: wood_mesh(trunk), material: MaterialKind::FadingBark },
+            wood: MeshPart { mesh: Some(wood_mesh(&trunk)), material: MaterialKind::FadingBark },
             bare_wood: None,
-            leaves: Some(MeshPart { mesh: envelope_mesh(envelope, images), material }),
+            leaves: Some(MeshPart { mesh: Some(envelope_mesh(&envelope, images)), material }),
             is_wood_nested: false,
         }
     });
     let low = LodMeshes { wood: low, bare_wood: None, leaves: None, is_wood_nested: false };
-    std::iter::once(full_level(model, MaterialKind::FadingBark)).chain(medium).chain([low]).collect()
+    let high = full_level(model, MaterialKind::FadingBark, PartSet::in_leaf(0));
+    std::iter::once(high).chain(medium).chain([low]).collect()
 }
 
-fn wood_mesh(wood: WoodVertices) -> Mesh {
-    mesh(wood.positions, wood.normals, wood.uvs, wood.sway, wood.indices)
+fn wood_mesh(wood: &WoodVertices) -> Mesh {
+    pack_wood(mesh(&wood.positions, &wood.normals, &wood.uvs, &wood.indices), &wood.sway)
 }
 
 /// Its second texture coordinates hold the number of images of its sequence, and mark it as an envelope.
-fn envelope_mesh(envelope: EnvelopeVertices, images: u32) -> Mesh {
+fn envelope_mesh(envelope: &EnvelopeVertices, images: u32) -> Mesh {
     let sequence = vec![[images as f32, 0.0]; envelope.positions.len()];
-    mesh(envelope.positions, envelope.normals, envelope.uvs, envelope.sway, envelope.indices)
+    pack_wood(mesh(&envelope.positions, &envelope.normals, &envelope.uvs, &envelope.indices), &envelope.sway)
         .with_inserted_attribute(Mesh::ATTRIBUTE_UV_1, sequence)
 }
 
 /// Its colours are two texels, of which each vertex has one; it stands as the root of the trunk does: still.
-fn plain_mesh(four: CrossedPolygons) -> Mesh {
+fn plain_mesh(four: &CrossedPolygons) -> Mesh {
     let trunk = four.colours.first().copied();
     let uv = |colour: &[f32; 3]| [if Some(*colour) == trunk { 0.25 } else { 0.75 }, 0.5];
-    let uvs = four.colours.iter().map(uv).collect();
+    let uvs: Vec<[f32; 2]> = four.colours.iter().map(uv).collect();
     let sway = vec![[0.0, 0.0, 0.0, 1.0]; four.positions.len()];
-    mesh(four.positions, four.normals, uvs, sway, four.indices)
+    pack_wood(mesh(&four.positions, &four.normals, &uvs, &four.indices), &sway)
 }
 
-fn leaf_mesh(leaves: LeafVertices) -> Mesh {
-    mesh(leaves.positions, leaves.normals, leaves.uvs, leaves.sway, leaves.indices)
-        .with_inserted_attribute(ATTRIBUTE_LEAF_AXIS, leaves.axis)
-        .with_inserted_attribute(ATTRIBUTE_LEAF_ANCHOR, leaves.anchor)
+fn leaf_mesh(leaves: &LeafVertices) -> Mesh {
+    let mesh = mesh(&leaves.positions, &leaves.normals, &leaves.uvs, &leaves.indices);
+    pack_leaves(mesh, &leaves.sway, &leaves.axis, &leaves.anchor)
 }
 
-fn mesh(
-    positions: Vec<[f32; 3]>,
-    normals: Vec<[f32; 3]>,
-    uvs: Vec<[f32; 2]>,
-    sway: Vec<[f32; 4]>,
-    indices: Vec<u32>,
-) -> Mesh {
-    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
-        .with_inserted_attribute(ATTRIBUTE_SWAY, sway)
-        .with_inserted_indices(Indices::U32(indices))
+fn mesh(positions: &[[f32; 3]], normals: &[[f32; 3]], uvs: &[[f32; 2]], indices: &[u32]) -> Mesh {
+    // The copy on the CPU goes by `mesh_copies.rs`.
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions.to_vec())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, normals.to_vec())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs.to_vec())
+        .with_inserted_indices(Indices::U32(indices.to_vec()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{
-        lod::LEAST_LEAF_SHARE,
+        lod::{Decimation, LEAST_LEAF_SHARE},
         tree::{Growth, MOST_ENLARGED, crown::impressionist::ImpressionistCrown},
     };
 
@@ -213,12 +218,33 @@ mod tests {
         let species = Species { growth: Growth::Impressionist(crown), variants: 1, ..Species::default() };
         let model = TreeModel::bake(&species, species.age.mature_years, 1);
         let polygons = model.skeleton.clusters.len() as f32;
-        let meshes = species_meshes(&species, false, vec![model], LevelStyle::Thinned, &LodBakeSettings::default());
-        let vertices = |lod: &LodMeshes| lod.leaves.as_ref().map_or(0, |part| part.mesh.count_vertices());
+        let recipe = LevelRecipe { species, ..LevelRecipe::default() };
+        let meshes = species_meshes(&recipe, false, &[model], PartSet::ALL);
+        let leaves = |lod: &LodMeshes| lod.leaves.as_ref().and_then(|part| part.mesh.clone());
+        let vertices = |lod: &LodMeshes| leaves(lod).map_or(0, |mesh| mesh.count_vertices());
         let shares: Vec<f32> =
             meshes.variants[0].lods.iter().map(|lod| vertices(lod) as f32 / 3.0 / polygons).collect();
         // A tree of 14 m has 700 pixels of a picture of 1080 at 26.1 m, and the geometric mean of 700 and 100 at 69.0 m.
         let expected = [1.0, 1.0, 30.0 / 69.0];
         assert!(shares.iter().zip(expected).all(|(share, expected)| (share - expected).abs() < 0.005), "{shares:?}");
+    }
+    #[test]
+    fn only_what_is_wanted_and_the_coarsest_level_are_made_at_first() {
+        let species = Species { variants: 1, ..Species::default() };
+        let model = TreeModel::bake(&species, 60.0, 2);
+        // So much that a bare tree needs some of it back.
+        let decimations = vec![Decimation { least_radius_m: 0.3, leaf_share: 0.5 }; 2];
+        let bake = LodBakeSettings { decimations, ..LodBakeSettings::default() };
+        let recipe = LevelRecipe { species, bake, ..LevelRecipe::default() };
+        let made = |wanted: PartSet| -> Vec<[bool; 3]> {
+            let meshes = species_meshes(&recipe, false, &[model.clone()], wanted);
+            let is_made = |part: Option<&MeshPart>| part.is_some_and(|part| part.mesh.is_some());
+            let parts = |lod: &LodMeshes| [Some(&lod.wood), lod.bare_wood.as_ref(), lod.leaves.as_ref()].map(is_made);
+            meshes.variants[0].lods.iter().map(parts).collect()
+        };
+        assert_eq!(made(PartSet::EMPTY), [[false; 3], [false; 3], [true, false, true]]);
+        let bare = PartSet::one(1, LevelPart::BareWood);
+        let expected = [[true, false, true], [false, true, false], [true, false, true]];
+        assert_eq!(made(bare.and(PartSet::in_leaf(0))), expected);
     }
 }

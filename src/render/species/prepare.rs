@@ -4,13 +4,17 @@ use super::{
     library::{
         PreparedLod, PreparedMesh, PreparedSpecies, PreparedVariant, SpeciesLibrary, SpeciesPrepared, VariantRemoved,
     },
-    lod_meshes::{LodMeshes, MeshPart, SpeciesMeshes, VariantMeshes, species_meshes},
+    lod_meshes::{LevelRecipe, LodMeshes, MeshPart, SpeciesMeshes, VariantMeshes, species_meshes},
     materials::{MaterialAssets, SpeciesMaterials},
+    mesh_copies::MeshCopies,
+    part_demand::PartDemand,
+    part_set::PartSet,
 };
 use crate::{
     background::{Work, spawn_work},
     lod::LodBakeSettings,
     render::{
+        capabilities::RenderCapabilities,
         settings::{ActiveLevelOfDetail, LevelStyle},
         wind_exposure::WindExposure,
     },
@@ -21,7 +25,7 @@ use bevy::{
     prelude::*,
     tasks::{block_on, poll_once},
 };
-use std::collections::VecDeque;
+use std::{collections::VecDeque, sync::Arc};
 
 /// Species that are being prepared.
 #[derive(Resource, Default)]
@@ -38,6 +42,7 @@ struct Preparation {
     species: AssetId<Species>,
     age_step: i32,
     generation: u64,
+    recipe: Arc<LevelRecipe>,
     task: Work<SpeciesMeshes>,
 }
 
@@ -47,6 +52,7 @@ pub(crate) fn start_preparing_species(
     species_models: Res<SpeciesModels>,
     models: Res<Assets<TreeModel>>,
     settings: Res<ActiveLevelOfDetail>,
+    capabilities: Option<Res<RenderCapabilities>>,
     library: Res<SpeciesLibrary>,
     mut queue: ResMut<PreparationQueue>,
 ) {
@@ -62,13 +68,27 @@ pub(crate) fn start_preparing_species(
     let Some((id, age_step)) = waiting.pop_front() else { return };
     let Some(entry) = species_models.get(id) else { return };
     let Some(stage) = entry.stages.get(&age_step) else { return };
-    let (species, style, bake, generation) = (entry.species.clone(), *style, bake.clone(), stage.generation);
+    let generation = stage.generation;
+    let recipe = Arc::new(LevelRecipe {
+        species: entry.species.clone(),
+        style: *style,
+        bake: bake.clone(),
+        compresses_textures: capabilities.is_some_and(|it| it.reads_compressed_textures),
+    });
     let variants: Vec<TreeModel> = stage.models.iter().filter_map(|model| models.get(model).cloned()).collect();
     running.retain(|other| (other.species, other.age_step) != (id, age_step));
     let has_images = library.species.get(&id).is_some_and(|prepared| prepared.generation == generation)
         || running.iter().any(|other| (other.species, other.generation) == (id, generation));
-    let task = spawn_work(move || species_meshes(&species, !has_images, variants, style, &bake));
-    running.push(Preparation { species: id, age_step, generation, task });
+    let (own, wanted) = (recipe.clone(), parts_in_use(&library, id, age_step));
+    let task = spawn_work(move || species_meshes(&own, !has_images, &variants, wanted));
+    running.push(Preparation { species: id, age_step, generation, recipe, task });
+}
+
+/// The meshes that trees of a species and an age have on the GPU. Those that follow them have to be there at once.
+fn parts_in_use(library: &SpeciesLibrary, species: AssetId<Species>, age_step: i32) -> PartSet {
+    let variants = library.species.get(&species).into_iter().flat_map(|prepared| prepared.variants.values());
+    let of_age = variants.filter(|variant| variant.age_step == age_step);
+    of_age.fold(PartSet::EMPTY, |parts, variant| parts.and(variant.parts_there()))
 }
 
 /// Forgets species that nobody has any longer.
@@ -91,6 +111,7 @@ pub(crate) fn remove_prepared_species(
 #[derive(SystemParam)]
 pub(crate) struct PreparedAssets<'w> {
     meshes: ResMut<'w, Assets<Mesh>>,
+    copies: ResMut<'w, MeshCopies>,
     models: Res<'w, Assets<TreeModel>>,
     exposure: Res<'w, WindExposure>,
     materials: MaterialAssets<'w>,
@@ -110,7 +131,7 @@ pub(crate) fn finish_preparing_species(
     let is_first = |number: usize| running[..number].iter().all(|other| other.species != running[number].species);
     let ready = (0..running.len()).find(|&number| is_first(number) && running[number].task.is_finished());
     let Some(number) = ready else { return };
-    let Preparation { species, age_step, generation, mut task } = queue.running.remove(number);
+    let Preparation { species, age_step, generation, recipe, mut task } = queue.running.remove(number);
     let Some(meshes) = block_on(poll_once(&mut task)) else { return };
     let Some(entry) = species_models.get(species) else { return };
     let meshes = match meshes {
@@ -140,7 +161,14 @@ pub(crate) fn finish_preparing_species(
         let Some(model) = assets.models.get(handle) else { continue };
         let bounds = assets.exposure.aabb(model, &in_library.phenology);
         let lods = lods.into_iter().map(|lod| assets.add_lod(lod, &in_library.materials)).collect();
-        in_library.variants.insert(handle.id(), PreparedVariant { age_step, lods, bounds, height_m });
+        let demand = PartDemand::default();
+        let mut variant =
+            PreparedVariant { age_step, lods, bounds, height_m, recipe: recipe.clone(), kept: PartSet::EMPTY, demand };
+        variant.kept = match recipe.style {
+            LevelStyle::Thinned => PartSet::in_leaf(variant.lods.len() - 1),
+            LevelStyle::Paper | LevelStyle::Full => variant.all_parts(),
+        };
+        in_library.variants.insert(handle.id(), variant);
     }
     prepared.write(SpeciesPrepared { species, age_step, is_replaced });
 }
@@ -149,7 +177,7 @@ impl PreparedAssets<'_> {
     fn add_lod(&mut self, lod: LodMeshes, species: &SpeciesMaterials) -> PreparedLod {
         let LodMeshes { wood, bare_wood, leaves, is_wood_nested } = lod;
         let mut add = |MeshPart { mesh, material }: MeshPart| PreparedMesh {
-            mesh: self.meshes.add(mesh),
+            mesh: mesh.map(|mesh| self.copies.add(mesh, &mut self.meshes)),
             can_fade: material.can_fade(),
             bare_materials: self.materials.when_bare(&material, species),
             materials: self.materials.of_mesh(material, species),

@@ -1,5 +1,6 @@
 //! The material that poses trees in the vertex shader.
 
+use super::packed_vertices::{ATTRIBUTE_LEAF_AXIS, ATTRIBUTE_LEAF_REACH, ATTRIBUTE_SWAY, PACKED_LAYOUT};
 use crate::{
     dynamics::leaf::LeafResponse,
     render::{
@@ -11,7 +12,7 @@ use crate::{
     tree::{phenology::Phenology, species::Wood},
 };
 use bevy::{
-    mesh::{MeshVertexAttribute, MeshVertexBufferLayoutRef, VertexFormat},
+    mesh::MeshVertexBufferLayoutRef,
     pbr::{ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline},
     prelude::*,
     render::{
@@ -20,15 +21,6 @@ use bevy::{
     },
     shader::ShaderRef,
 };
-
-/// Beam, place on it, leaf phase, light: `sway` of the shader.
-pub const ATTRIBUTE_SWAY: MeshVertexAttribute = MeshVertexAttribute::new("Sway", 0x5357_4159, VertexFormat::Float32x4);
-/// Main axis of a leaf at rest and its tint: `axis` of the shader.
-pub const ATTRIBUTE_LEAF_AXIS: MeshVertexAttribute =
-    MeshVertexAttribute::new("LeafAxis", 0x4c41_5849, VertexFormat::Float32x4);
-/// Where a leaf hangs at rest: `anchor` of the shader.
-pub const ATTRIBUTE_LEAF_ANCHOR: MeshVertexAttribute =
-    MeshVertexAttribute::new("LeafAnchor", 0x4c41_4e43, VertexFormat::Float32x4);
 
 /// A standard material whose vertices sway.
 pub type SwayMaterial = ExtendedMaterial<StandardMaterial, SwayExtension>;
@@ -200,7 +192,7 @@ impl MaterialExtension for SwayExtension {
         let mut flags = vec!["VERTEX_COLORS", "VERTEX_TANGENTS", "VISIBILITY_RANGE_DITHER"];
         if has_leaves {
             attributes.push(ATTRIBUTE_LEAF_AXIS.at_shader_location(9));
-            attributes.push(ATTRIBUTE_LEAF_ANCHOR.at_shader_location(10));
+            attributes.push(ATTRIBUTE_LEAF_REACH.at_shader_location(10));
             flags.push("WINDWOOD_LEAVES");
         }
         if is_envelope {
@@ -213,6 +205,7 @@ impl MaterialExtension for SwayExtension {
         }
         flags.extend(key.bind_group_data.flags());
         set_constants(descriptor, &TAG_LAYOUT);
+        set_constants(descriptor, &PACKED_LAYOUT);
         shade_what_is_seen(descriptor, key.mesh_key);
         tell_of_sun_shadow(descriptor, key.mesh_key);
         specialize(descriptor, layout, &attributes, &flags)
