@@ -30,11 +30,14 @@ use image::RgbaImage;
 use std::{
     path::Path,
     sync::{Arc, Mutex},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 /// Far plane of cameras: beyond the horizon of any scene, m.
 pub const FAR_M: f32 = 60_000.0;
+
+/// Longest wait for a picture that was taken.
+const LONGEST_WAIT: Duration = Duration::from_secs(60);
 
 /// Bevy with a window of that title and size.
 pub fn engine(title: &str, (width, height): (u32, u32)) -> PluginGroupBuilder {
@@ -131,7 +134,9 @@ pub fn capture(app: &mut App, target: &Handle<Image>, (width, height): (u32, u32
             *slot = Some(captured.image.clone());
         }
     });
-    for _ in 0..16 {
+    // It is taken of the first frame. The next ones only wait for it, however busy the machine is.
+    let start = Instant::now();
+    while start.elapsed() < LONGEST_WAIT {
         step(app);
         let taken = slot.lock().ok().and_then(|mut slot| slot.take());
         if let Some(image) = taken {

@@ -45,11 +45,11 @@ impl Daylight {
         },
     };
 
-    /// The sun a hand's breadth above the horizon.
+    /// The sun a hand's breadth above the horizon, as an eye sees it that has got used to it.
     pub const DUSK: Self = Self {
         sun: Vec3::new(0.55, 0.13, 0.25),
         sun_colour: [1.0, 0.58, 0.28],
-        sun_illuminance: 7_500.0,
+        sun_illuminance: 19_000.0,
         zenith: Vec3::new(0.10, 0.17, 0.40),
         horizon: Vec3::new(0.85, 0.55, 0.42),
         glow: Vec3::new(2.6, 1.1, 0.3),
@@ -59,15 +59,15 @@ impl Daylight {
             zenith: Vec3::new(0.42, 0.50, 0.85),
             horizon: Vec3::new(0.70, 0.52, 0.44),
             ground: Vec3::new(0.14, 0.11, 0.07),
-            brightness: 700.0,
+            brightness: 1900.0,
         },
     };
 
-    /// Under the clouds of a storm, through which a little of the sun comes.
+    /// Under the clouds of a storm, through which a little of the sun comes, likewise.
     pub const STORM: Self = Self {
         sun: Vec3::new(0.35, 0.85, 0.15),
         sun_colour: [0.92, 0.96, 1.0],
-        sun_illuminance: 2_600.0,
+        sun_illuminance: 6_000.0,
         zenith: Vec3::new(0.20, 0.24, 0.29),
         horizon: Vec3::new(0.52, 0.57, 0.60),
         glow: Vec3::new(0.05, 0.05, 0.05),
@@ -77,7 +77,7 @@ impl Daylight {
             zenith: Vec3::new(0.72, 0.80, 0.88),
             horizon: Vec3::new(0.50, 0.54, 0.56),
             ground: Vec3::new(0.12, 0.13, 0.09),
-            brightness: 1000.0,
+            brightness: 2400.0,
         },
     };
 

@@ -180,9 +180,9 @@ impl Game {
             (0..3).for_each(|_| self.app.update());
             self.rest();
         }
-        // Trees that were touched come to rest, and what lingers goes.
-        self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(0.5)));
-        (0..80).for_each(|_| self.app.update());
+        // Trees that were touched come to rest, and what lingers goes: meshes that no tree has wanted for 32 rounds of 17 frames.
+        self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(60)));
+        (0..640).for_each(|_| self.app.update());
         self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     }
 

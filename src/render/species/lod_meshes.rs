@@ -228,12 +228,13 @@ mod tests {
         let expected = [1.0, 1.0, 30.0 / 69.0];
         assert!(shares.iter().zip(expected).all(|(share, expected)| (share - expected).abs() < 0.005), "{shares:?}");
     }
+
     #[test]
     fn only_what_is_wanted_and_the_coarsest_level_are_made_at_first() {
         let species = Species { variants: 1, ..Species::default() };
-        let model = TreeModel::bake(&species, 60.0, 2);
+        let model = TreeModel::bake(&species, species.age.mature_years, 2);
         // So much that a bare tree needs some of it back.
-        let decimations = vec![Decimation { least_radius_m: 0.3, leaf_share: 0.5 }; 2];
+        let decimations = vec![Decimation { least_radius_m: 0.03, leaf_share: 0.5 }; 2];
         let bake = LodBakeSettings { decimations, ..LodBakeSettings::default() };
         let recipe = LevelRecipe { species, bake, ..LevelRecipe::default() };
         let made = |wanted: PartSet| -> Vec<[bool; 3]> {
