@@ -203,7 +203,7 @@ fn mesh(positions: &[[f32; 3]], normals: &[[f32; 3]], uvs: &[[f32; 2]], indices:
 mod tests {
     use super::*;
     use crate::{
-        lod::{Decimation, LEAST_LEAF_SHARE},
+        lod::LEAST_LEAF_SHARE,
         tree::{Growth, MOST_ENLARGED, crown::impressionist::ImpressionistCrown},
     };
 
@@ -231,12 +231,11 @@ mod tests {
 
     #[test]
     fn only_what_is_wanted_and_the_coarsest_level_are_made_at_first() {
-        let species = Species { variants: 1, ..Species::default() };
+        // A bare oak needs some of the wood that is left out under its leaves.
+        let oak = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/species/oak.species.ron"));
+        let species: Species = crate::ron_text::from_ron(oak).expect("the species that is shipped");
         let model = TreeModel::bake(&species, species.age.mature_years, 2);
-        // So much that a bare tree needs some of it back.
-        let decimations = vec![Decimation { least_radius_m: 0.03, leaf_share: 0.5 }; 2];
-        let bake = LodBakeSettings { decimations, ..LodBakeSettings::default() };
-        let recipe = LevelRecipe { species, bake, ..LevelRecipe::default() };
+        let recipe = LevelRecipe { species, ..LevelRecipe::default() };
         let made = |wanted: PartSet| -> Vec<[bool; 3]> {
             let meshes = species_meshes(&recipe, false, &[model.clone()], wanted);
             let is_made = |part: Option<&MeshPart>| part.is_some_and(|part| part.mesh.is_some());
