@@ -134,7 +134,7 @@ fn hash_at(machine: &mut App, time_s: f64) -> u64 {
     };
     for (_, tree) in standing {
         world.get::<Transform>(tree).into_iter().for_each(&mut add);
-        let beams = world.get::<TreeBeams>(tree).into_iter().flat_map(|beams| beams.iter());
+        let beams = world.get::<TreeBeams>(tree).into_iter().flat_map(TreeBeams::iter);
         beams.filter_map(|beam| world.get::<Transform>(beam)).for_each(&mut add);
     }
     hash

@@ -2,7 +2,7 @@
 
 use super::{
     cells::ForestCells,
-    change_index::TileChanges,
+    change_index::{ChangeIndex, TileChanges},
     stand::{Stand, StandSpecies},
     stand_changes::CellBalances,
 };
@@ -39,7 +39,7 @@ pub(super) fn renew_stands(mut frames: Local<u32>, season: Res<Season>, mut fore
         }
         let (planter, ground) = (stand.planter.clone(), stand.ground.clone());
         let species: Vec<_> = stand.species.iter().map(now).collect();
-        let tiles = forest.changes.as_ref().map_or_else(Vec::new, |index| index.tiles());
+        let tiles = forest.changes.as_ref().map_or_else(Vec::new, ChangeIndex::tiles);
         forest.stand_is_due = false;
         forest.stand_task = Some(spawn_work(move || {
             let balances = balances(&tiles, &planter, &ground, &species);

@@ -237,7 +237,7 @@ mod tests {
         let model = TreeModel::bake(&species, species.age.mature_years, 2);
         let recipe = LevelRecipe { species, ..LevelRecipe::default() };
         let made = |wanted: PartSet| -> Vec<[bool; 3]> {
-            let meshes = species_meshes(&recipe, false, &[model.clone()], wanted);
+            let meshes = species_meshes(&recipe, false, std::slice::from_ref(&model), wanted);
             let is_made = |part: Option<&MeshPart>| part.is_some_and(|part| part.mesh.is_some());
             let parts = |lod: &LodMeshes| [Some(&lod.wood), lod.bare_wood.as_ref(), lod.leaves.as_ref()].map(is_made);
             meshes.variants[0].lods.iter().map(parts).collect()
