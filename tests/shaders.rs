@@ -49,8 +49,16 @@ fn constants_of_the_sway_are_equal_in_rust_and_wesl() {
     ["FREE_BEND", "MOST_BEND"].into_iter().for_each(|name| assert_eq!(value(code, name), value(BEAM, name), "{name}"));
     let pose_pass = include_str!("../src/render/shaders/pose_pass.wesl");
     assert_eq!(value(code, "LEAST_WIND_M_S"), value(pose_pass, "LEAST_WIND_M_S"));
-    let (code, shader) = (include_str!("../src/sway/response.rs"), include_str!("../src/render/shaders/wind.wesl"));
-    assert_eq!(value(code, "FAST_PERIODS_A_METRE"), value(shader, "FAST_PERIODS_A_METRE"));
+    let shader = include_str!("../src/render/shaders/wind.wesl");
+    for (code, names) in [
+        (include_str!("../src/sway/response.rs"), &["FAST_PERIODS_A_METRE"][..]),
+        (
+            include_str!("../src/wind/interpolation.rs"),
+            &["HALF_ANGLE_RAD", "LINEAR_SHARE_ACROSS", "EVEN_SKEW", "ODD_SKEW", "CURVED_SKEW", "NEAR_SKEW"],
+        ),
+    ] {
+        names.iter().for_each(|name| assert_eq!(value(code, name), value(shader, name), "{name}"));
+    }
 }
 
 #[test]

@@ -3,11 +3,7 @@
 use crate::{
     actors::{Ask, Struck, act, follow_script, roll_ball, spawn_actors},
     options::{Event, Options},
-    support::{
-        daylight::{haze, spawn_daylight},
-        options::SceneOptions,
-        scene::Scene,
-    },
+    support::{daylight::Daylight, options::SceneOptions, scene::Scene},
     window,
 };
 use bevy::prelude::*;
@@ -59,7 +55,7 @@ impl Scene for BlastScene {
     }
 
     fn camera_effects(&self) -> impl Bundle + use<> {
-        haze(900.0)
+        Daylight::AFTERNOON.haze(900.0)
     }
 
     fn plugin(app: &mut App) {
@@ -105,7 +101,7 @@ fn spawn_scene(
         bevy::light::NotShadowCaster,
     ));
     spawn_trees(&mut commands, &assets);
-    spawn_daylight(&mut commands, &mut meshes, &mut materials, (Vec3::ZERO, 2000.0), (18.0, 60.0));
+    Daylight::AFTERNOON.spawn(&mut commands, &mut meshes, &mut materials, (Vec3::ZERO, 2000.0), (18.0, 60.0));
 }
 
 fn spawn_trees(commands: &mut Commands, assets: &AssetServer) {

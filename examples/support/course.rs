@@ -3,7 +3,8 @@
 
 use super::{
     capture::{self, create_folder, save},
-    daylight, dusk,
+    daylight::Daylight,
+    dusk,
     options::ImageOptions,
     pictures::{TIMEOUT, WARM_UP_FRAMES, is_drawn, let_time_pass},
     scene::no_plan_failed,
@@ -88,7 +89,7 @@ impl Course {
             );
         } else {
             app.add_systems(Startup, spawn_day).add_observer(|camera: On<Add<Camera3d>>, mut commands: Commands| {
-                commands.entity(camera.entity).insert(daylight::haze(SKY_M));
+                commands.entity(camera.entity).insert(Daylight::AFTERNOON.haze(SKY_M));
             });
         }
         if self.options.image.headless {
@@ -148,7 +149,7 @@ fn spawn_day(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    daylight::spawn_daylight(&mut commands, &mut meshes, &mut materials, (Vec3::ZERO, SKY_M), (25.0, 140.0));
+    Daylight::AFTERNOON.spawn(&mut commands, &mut meshes, &mut materials, (Vec3::ZERO, SKY_M), (25.0, 140.0));
 }
 
 fn spawn_evening(

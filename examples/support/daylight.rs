@@ -132,19 +132,3 @@ impl Daylight {
         base + self.glow * (0.12 * glow.powi(6) + 0.25 * glow.powi(64))
     }
 }
-
-/// The haze of a clear afternoon: see [`Daylight::haze`].
-pub fn haze(distance_m: f32) -> DistanceFog {
-    Daylight::AFTERNOON.haze(distance_m)
-}
-
-/// Spawns a clear afternoon: see [`Daylight::spawn`].
-pub fn spawn_daylight(
-    commands: &mut Commands,
-    meshes: &mut Assets<Mesh>,
-    materials: &mut Assets<StandardMaterial>,
-    dome: (Vec3, f32),
-    shadows: (f32, f32),
-) {
-    Daylight::AFTERNOON.spawn(commands, meshes, materials, dome, shadows);
-}

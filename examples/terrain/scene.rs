@@ -3,7 +3,7 @@
 use crate::{
     options::{Options, View},
     support::{
-        daylight::{haze, spawn_daylight},
+        daylight::Daylight,
         landscape::{FINEST_CELL_M, Landscape},
         options::SceneOptions,
         scene::{Scene, no_plan_failed},
@@ -62,7 +62,7 @@ impl Scene for TerrainScene {
 
     /// Clear for kilometres, and blue at the horizon.
     fn camera_effects(&self) -> impl Bundle + use<> {
-        haze(19_000.0)
+        Daylight::AFTERNOON.haze(19_000.0)
     }
 
     fn plugin(app: &mut App) {
@@ -113,7 +113,7 @@ fn spawn_scene(
     let [from, to] = landscape.corners_m.map(DVec2::as_vec2);
     let middle = 0.5 * (from + to);
     let sky = (Vec3::new(middle.x, 2500.0, middle.y), 60_000.0);
-    spawn_daylight(&mut commands, &mut meshes, &mut materials, sky, (60.0, 600.0));
+    Daylight::AFTERNOON.spawn(&mut commands, &mut meshes, &mut materials, sky, (60.0, 600.0));
 }
 
 /// The woods as a colour of the ground, for where no tree is drawn.

@@ -229,10 +229,8 @@ impl TreePoser {
 
     /// Poses all beams for given free tip angles, one a beam, and as [`pose`](Self::pose) for the wind at the tree.
     pub(crate) fn pose_free(&self, free: &[Vec3A], wind: Vec3, out: &mut [BeamPose]) {
-        let downwind = direction_of(wind);
-        for (index, (beam, free)) in self.beams.iter().zip(free).enumerate().take(out.len()) {
-            out[index] = beam.pose(saturate(*free, beam.angle_limit_rad), downwind, out);
-        }
+        let posed = out.len().min(free.len());
+        self.pose_by(|index, _| free[index], wind, &mut out[..posed]);
     }
 
     /// Poses all beams, for the responses of its [`rows`](Self::rows) at the tree's place and time
@@ -240,10 +238,14 @@ impl TreePoser {
     /// wind. No beam bends past the wind at the tree at that time: `wind` is its velocity in the tree's coordinates, m/s; where it is 0, beams
     /// bend as far as their own limits let them. Beams beyond the length of `out` are left out.
     pub fn pose(&self, responses: &[Vec4], wind: Vec3, out: &mut [BeamPose]) {
+        self.pose_by(|_, beam| beam.free_angle(response_of(beam, responses)), wind, out);
+    }
+
+    #[inline]
+    fn pose_by(&self, free_angle: impl Fn(usize, &PreparedBeam) -> Vec3A, wind: Vec3, out: &mut [BeamPose]) {
         let downwind = direction_of(wind);
         for (index, beam) in self.beams.iter().enumerate().take(out.len()) {
-            let free = beam.free_angle(response_of(beam, responses));
-            out[index] = beam.pose(saturate(free, beam.angle_limit_rad), downwind, out);
+            out[index] = beam.pose(saturate(free_angle(index, beam), beam.angle_limit_rad), downwind, out);
         }
     }
 }

@@ -16,10 +16,6 @@ use crate::terrain::{
 
 /// Greatest size of a file.
 const MOST_BYTES: u64 = 256 << 20;
-/// Lines of the random ground. Fewer leave streaks that hill shading shows.
-const LINES: u32 = 64;
-/// Cells of the map per wave of the shortest wave.
-const WAVE_CELLS: f64 = 2.0;
 /// Steps of the work: reading, measuring, and each model.
 const STEPS: u32 = 2 + CovarianceModel::ALL.len() as u32;
 
@@ -114,9 +110,7 @@ impl MapFit {
     /// Settings for more ground of the map's kind, by one of the fits.
     pub fn settings(&self, fit: usize, seed: u64) -> Option<TurningBandsSettings> {
         let fit = self.fits.get(fit)?;
-        let finest_m = (WAVE_CELLS * self.map.grid().cell_m().min_element()).min(fit.scale_m);
-        let mean_m = self.variogram.drift().mean_m;
-        let settings = TurningBandsSettings { mean_m, lines: LINES, ..fit.settings(finest_m, seed) };
+        let settings = fit.settings_like(&self.variogram, self.map.grid().cell_m().min_element(), seed);
         Some(settings).filter(|settings| settings.validate().is_ok())
     }
 }

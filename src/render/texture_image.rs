@@ -19,6 +19,21 @@ pub(crate) fn image(texture: &TextureData, address_mode: ImageAddressMode, coars
     image_in(format, texture.mips.concat(), texture, address_mode, coarsest_mip)
 }
 
+/// A texture as an image for a device: in blocks where it reads these (`compresses`).
+pub(crate) fn device_image(
+    texture: &TextureData,
+    channels: Channels,
+    compresses: bool,
+    address_mode: ImageAddressMode,
+    coarsest_mip: f32,
+) -> Image {
+    if compresses {
+        compressed_image(texture, channels, address_mode, coarsest_mip)
+    } else {
+        image(texture, address_mode, coarsest_mip)
+    }
+}
+
 /// What the channels of a texture hold, for its blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Channels {
@@ -62,9 +77,9 @@ impl Channels {
 /// Components of normals reach 0.7 in blocks, in steps of a 128th: two of them are shorter than 1.
 const STEEPEST: u8 = 89;
 
-/// The same in blocks of 4 x 4 texels: an eighth to a half as many bytes. A texture that is no whole number of blocks wide and high stays
+/// An image in blocks of 4 x 4 texels: an eighth to a half as many bytes. A texture that is no whole number of blocks wide and high stays
 /// as it is.
-pub(crate) fn compressed_image(
+fn compressed_image(
     texture: &TextureData,
     channels: Channels,
     address_mode: ImageAddressMode,

@@ -36,6 +36,10 @@ const FARTHEST: f64 = 9.0;
 const LONGEST_SCALE: f64 = 2.0;
 /// Of the anisotropy, either way; what [`TurningBandsSettings`] allow.
 const MOST_RATIO: f64 = 100.0;
+/// Cells of a map per wave of the shortest wave that it shows.
+pub const SHORTEST_WAVE_CELLS: f64 = 2.0;
+/// Lines of random ground that is like a map.
+const LINES_LIKE_MAPS: u32 = 64;
 /// e of the module's head, over the variance.
 const NOISE: f64 = 1e-3;
 
@@ -70,6 +74,14 @@ impl Fit {
             seed,
             ..Default::default()
         }
+    }
+
+    /// Settings for more ground of the kind of the map whose variogram was fitted: its mean elevation, waves as short as cells of
+    /// `cell_m` can show, and so many lines that hill shading shows no streaks.
+    pub fn settings_like(&self, variogram: &Variogram, cell_m: f64, seed: u64) -> TurningBandsSettings {
+        let finest_m = (SHORTEST_WAVE_CELLS * cell_m).min(self.scale_m);
+        let mean_m = variogram.drift().mean_m;
+        TurningBandsSettings { mean_m, lines: LINES_LIKE_MAPS, ..self.settings(finest_m, seed) }
     }
 
     /// Distance, along the longer axis, at which the correlation falls to 5%, m.

@@ -88,7 +88,7 @@ pub use elevation::{Elevation, ElevationNotice, ElevationSettings, RawLayout, Ra
 pub use elevation_grid::ElevationGrid;
 pub use elevation_map::{ElevationMap, Interpolation, MapPlacement};
 pub use error::TerrainError;
-pub use fit::{Fit, fit_model, fit_models};
+pub use fit::{Fit, SHORTEST_WAVE_CELLS, fit_model, fit_models};
 pub use layers::Layers;
 pub use plugin::TerrainPlugin;
 pub use ray_cast_ground::RayCastGround;

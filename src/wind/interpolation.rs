@@ -10,12 +10,14 @@ const HALF_ANGLE_RAD: f32 = 0.955_316_6;
 /// The share of linear interpolation in height: it loses some power of fast gusts, and takes away from the 5% too much that
 /// [`unit_weights`] have of gusts that neighbours share in part. Chosen so that a place has the power of every frequency to 5%.
 const LINEAR_SHARE_IN_HEIGHT: f32 = 0.04;
-/// The same across the wind, where it is less than none, and [`SKEW`] makes up for it.
+/// The same across the wind, where it is less than none, and a skew makes up for it.
 const LINEAR_SHARE_ACROSS: f32 = -0.12;
-/// What is added to the weight of the farther sample on the left, as a polynomial in `2 t - 1`, and to that of the nearer one beyond what
-/// keeps the sum at 1. Fitted, with the two numbers above and below and the lags of [`lateral`](super::lateral), to the coherence of pairs
-/// of places.
-const SKEW: [f32; 3] = [0.05, 0.87, 0.40];
+/// What is added to the weight of the farther sample on the left, as a polynomial in `2 t - 1` of the second degree, and to that of the nearer
+/// one beyond what keeps the sum at 1. Fitted, with the number above and the lags of [`lateral`](super::lateral), to the coherence of pairs of
+/// places. `render/shaders/wind.wesl` has the same.
+const EVEN_SKEW: f32 = 0.05;
+const ODD_SKEW: f32 = 0.87;
+const CURVED_SKEW: f32 = 0.4;
 const NEAR_SKEW: f32 = -0.22;
 
 /// Weights of the samples at -1, 0, 1 and 2 for the place t in \[0, 1\], which keep the power of what is sampled.
@@ -51,8 +53,8 @@ fn weights_in_height(t: f32) -> [f32; 4] {
 fn weights_across(t: f32) -> [f32; 4] {
     let eased = ease(t);
     let hump = 4.0 * eased * (1.0 - eased);
-    let far = |side: f32| hump * (SKEW[0] + side * (SKEW[1] + side * SKEW[2]));
-    let near = |side: f32| hump * (side * (NEAR_SKEW - side * SKEW[2]) - SKEW[0]);
+    let far = |side: f32| hump * (EVEN_SKEW + side * (ODD_SKEW + side * CURVED_SKEW));
+    let near = |side: f32| hump * (side * (NEAR_SKEW - side * CURVED_SKEW) - EVEN_SKEW);
     let side = 2.0 * eased - 1.0;
     let [a, b, c, d] = unit_weights(eased, LINEAR_SHARE_ACROSS);
     [a + far(side), b + near(side), c + near(-side), d + far(-side)]

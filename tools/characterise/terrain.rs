@@ -10,17 +10,13 @@ use crate::{
 };
 use bevy::math::DVec2;
 use bevy_windwood::terrain::{
-    CovarianceModel, Elevation, ElevationGrid, ElevationNotice, ElevationSettings, Fit, TerrainError, TurningBands,
-    TurningBandsSettings, Variogram, VariogramSettings, fit_models,
+    CovarianceModel, Elevation, ElevationGrid, ElevationNotice, ElevationSettings, Fit, SHORTEST_WAVE_CELLS,
+    TerrainError, TurningBands, TurningBandsSettings, Variogram, VariogramSettings, fit_models,
 };
 use serde_json::{Value, json};
 
 /// Greatest size of a file: twice that of 4096 x 4096 samples of 64 bits, or of as many in text.
 const MOST_FILE_BYTES: u64 = 256 << 20;
-/// Lines of the random ground. Fewer leave streaks that hill shading shows.
-const LINES: u32 = 64;
-/// Cells per wave of the shortest wave.
-const WAVE_CELLS: f64 = 2.0;
 /// Share of the longest scale that is tried beyond which a fitted scale means that the map shows no range.
 const NO_RANGE: f64 = 0.99;
 
@@ -149,10 +145,7 @@ impl Analysis {
 
     /// Settings for random ground of the best model, with waves as short as cells of `cell_m` can show.
     fn settings(&self, cell_m: f64, seed: u64) -> TurningBandsSettings {
-        let best = self.best();
-        let finest_m = (WAVE_CELLS * cell_m).min(best.scale_m);
-        let mean_m = self.variogram.drift().mean_m;
-        TurningBandsSettings { mean_m, lines: LINES, ..best.settings(finest_m, seed) }
+        self.best().settings_like(&self.variogram, cell_m, seed)
     }
 
     fn to_json(&self, settings: &TurningBandsSettings) -> Value {
@@ -208,7 +201,7 @@ fn simulated(
     let in_cells_of = |map: &ElevationGrid| {
         ElevationGrid::sample(&ground, DVec2::ZERO, map.columns() as u32, map.rows() as u32, map.cell_m())
     };
-    let is_rougher_than_shown = settings.finest_wavelength_m < WAVE_CELLS * shown.cell_m().min_element();
+    let is_rougher_than_shown = settings.finest_wavelength_m < SHORTEST_WAVE_CELLS * shown.cell_m().min_element();
     // Waves that the picture cannot show are averaged away as those of the map are.
     if is_rougher_than_shown { reduced(&in_cells_of(map)?) } else { in_cells_of(shown) }
 }

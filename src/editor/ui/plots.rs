@@ -1,6 +1,6 @@
 //! Plots that all look alike.
 
-use bevy_egui::egui::{Color32, Rangef, RichText, Ui};
+use bevy_egui::egui::{Color32, Rangef, RichText, TextStyle, Ui, vec2};
 use egui_plot::{AxisHints, Corner, GridInput, GridMark, Legend, Line, LineStyle, Plot, PlotPoints, VLine};
 
 use super::theme::palette;
@@ -35,6 +35,19 @@ pub struct PlotForm<'a> {
     pub marks: &'a [(&'static str, f64)],
 }
 
+/// A plot that stands still, with its legend where there is room.
+pub fn still_plot(title: &str, height: f32, legend: Corner) -> Plot<'_> {
+    Plot::new(title)
+        .height(height)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_double_click_reset(false)
+        .show_crosshair(false)
+        .legend(Legend::default().position(legend).text_style(TextStyle::Small).background_alpha(0.6))
+}
+
 /// Draws a plot.
 pub fn plot(ui: &mut Ui, form: &PlotForm, curves: Vec<Curve>) {
     let target = palette(ui.visuals()).target;
@@ -49,17 +62,9 @@ pub fn plot(ui: &mut Ui, form: &PlotForm, curves: Vec<Curve>) {
         (false, true) => Corner::RightBottom,
         (false, false) => Corner::RightTop,
     };
-    let mut plot = Plot::new(form.title)
-        .height(form.height)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_double_click_reset(false)
-        .show_crosshair(false)
-        .set_margin_fraction(bevy_egui::egui::vec2(0.01, 0.06))
-        .legend(Legend::default().position(corner).text_style(bevy_egui::egui::TextStyle::Small).background_alpha(0.6));
-    plot = plot.custom_x_axes(vec![AxisHints::new_x().label_spacing(LABEL_SPACING)]);
+    let mut plot = still_plot(form.title, form.height, corner)
+        .set_margin_fraction(vec2(0.01, 0.06))
+        .custom_x_axes(vec![AxisHints::new_x().label_spacing(LABEL_SPACING)]);
     if is_log_x {
         plot = plot.x_grid_spacer(decades).x_axis_formatter(|mark, _| power_of_ten(mark));
     }

@@ -1,9 +1,9 @@
 //! What a wood is like: the counts of the chosen area's quadrats beside its law.
 
-use bevy_egui::egui::{RichText, TextStyle, Ui, vec2};
-use egui_plot::{Bar, BarChart, Corner, Legend, Plot, PlotPoints, Points};
+use bevy_egui::egui::{RichText, Ui, vec2};
+use egui_plot::{Bar, BarChart, Corner, PlotPoints, Points};
 
-use super::{theme::palette, value_rows::fact};
+use super::{plots::still_plot, theme::palette, value_rows::fact};
 use crate::editor::quadrat_histogram::QuadratHistogram;
 
 /// What is known of a wood.
@@ -54,22 +54,14 @@ fn bars(ui: &mut Ui, histogram: &QuadratHistogram) {
     let counted = histogram.observed.iter().enumerate();
     let bars = counted.map(|(count, quadrats)| Bar::new(count as f64, share(*quadrats as f64)).width(0.8)).collect();
     let law = histogram.expected.iter().enumerate().map(|(count, quadrats)| [count as f64, share(*quadrats)]);
-    let legend = Legend::default().position(Corner::RightTop).text_style(TextStyle::Small).background_alpha(0.6);
-    Plot::new("quadrats")
-        .height((ui.available_height() - 260.0).clamp(140.0, 360.0))
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_double_click_reset(false)
-        .show_crosshair(false)
-        .include_y(0.0)
-        .set_margin_fraction(vec2(0.02, 0.06))
-        .legend(legend)
-        .show(ui, |plot| {
+    let height = (ui.available_height() - 260.0).clamp(140.0, 360.0);
+    still_plot("quadrats", height, Corner::RightTop).include_y(0.0).set_margin_fraction(vec2(0.02, 0.06)).show(
+        ui,
+        |plot| {
             plot.bar_chart(BarChart::new("planted", bars).color(palette.lines[0]));
             plot.points(Points::new("law", PlotPoints::from_iter(law)).color(palette.lines[1]).radius(4.0));
-        });
+        },
+    );
 }
 
 fn numbers(ui: &mut Ui, histogram: &QuadratHistogram) {

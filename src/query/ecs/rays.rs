@@ -225,7 +225,7 @@ impl TreeRays<'_, '_> {
         let height_m = model.height_m() * uniform_scale(at);
         let mut blowing = Vec3::ZERO;
         let (mut free, mut poses) = (vec![Vec3A::ZERO; limbs], vec![BeamPose::REST; limbs]);
-        let mut responses = Vec::new();
+        let (mut responses, mut last_poser) = (Vec::new(), None);
         for WeightedResponse { response, weight } in self.sway.now() {
             let to_wind = response.field.frame().wind_from_world() * world_from_local(at);
             let (map, wind) = (response.basis.map(), response.beam_wind_in(&canopy));
@@ -235,6 +235,10 @@ impl TreeRays<'_, '_> {
             response.table.responses(&place, poser.rows(), &mut responses);
             poser.add_free_angles(&responses, weight, &mut free);
             blowing += weight * (world_from_local(at).transpose() * response.wind_at(&stand, &place, height_m));
+            last_poser = Some(poser);
+        }
+        // What beams do with their angles does not depend on the wind of which a poser was made.
+        if let Some(poser) = last_poser {
             poser.pose_free(&free, blowing, &mut poses);
         }
         model.body.posed(&poses)

@@ -7,6 +7,7 @@ use crate::{
     },
     sway::WindResponse,
 };
+use half::f16;
 
 /// Rows of `vec4` before where each row of the table is; `HEADER` of `render/shaders/wind.wesl`.
 const HEADER: usize = 8;
@@ -60,23 +61,11 @@ pub(crate) fn pack_wind(wind: &WindResponse) -> Vec<u8> {
     parts.concat()
 }
 
-/// Greatest number in half precision, and the least one with all its digits.
-const MOST_HALF: f32 = 65_504.0;
-const LEAST_NORMAL_HALF: f32 = 1.0 / 16_384.0;
-
 /// The bits of the nearest number in half precision (IEEE 754 binary16), of two equally near ones that which is even. What is too large or no
 /// number becomes the greatest.
 fn half_bits(value: f32) -> u16 {
-    let sign = if value.is_sign_negative() { 0x8000 } else { 0 };
-    let magnitude = value.abs().min(MOST_HALF);
-    if magnitude < LEAST_NORMAL_HALF {
-        // Multiples of 2^-24; the last of them is the least normal number, whose bits follow theirs.
-        return sign | (magnitude * 16_777_216.0).round_ties_even() as u16;
-    }
-    let bits = magnitude.to_bits();
-    let rounded = bits + 0x0fff + (bits >> 13 & 1);
-    // The exponents' biases are 127 and 15.
-    sign | ((rounded - (112 << 23)) >> 13) as u16
+    let most = f16::MAX.to_f32();
+    f16::from_f32(value.min(most).max(-most)).to_bits()
 }
 
 #[cfg(test)]

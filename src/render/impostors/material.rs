@@ -12,7 +12,7 @@ use crate::{
         lighting::{LitAsTrees, TreeLights},
         pipeline::{set_constants, shade_what_is_seen, specialize, tell_of_sun_shadow},
         species::tree_material::SeasonUniform,
-        texture_image::{ALL_MIPS, Channels, compressed_image, image},
+        texture_image::{ALL_MIPS, Channels, device_image},
     },
     texture::TextureData,
     tree::Species,
@@ -119,9 +119,8 @@ pub(crate) struct AtlasImages {
 
 impl AtlasImages {
     pub fn new(atlas: &ImpostorAtlas, sways: Vec<ImpostorSway>, summer: [f32; 3], compresses_textures: bool) -> Self {
-        let image = |texture: &TextureData, channels| match compresses_textures {
-            true => compressed_image(texture, channels, ImageAddressMode::ClampToEdge, ALL_MIPS),
-            false => image(texture, ImageAddressMode::ClampToEdge, ALL_MIPS),
+        let image = |texture: &TextureData, channels| {
+            device_image(texture, channels, compresses_textures, ImageAddressMode::ClampToEdge, ALL_MIPS)
         };
         let colour = image(&atlas.colour, Channels::Rgb);
         let surface = image(&atlas.surface, Channels::Rgba);

@@ -1,7 +1,7 @@
 //! The textures of a species as Bevy images: megabytes, laid out in the background.
 
 use crate::{
-    render::texture_image::{ALL_MIPS, Channels, compressed_image, image},
+    render::texture_image::{ALL_MIPS, Channels, device_image, image},
     texture::TextureData,
     tree::{bark::BarkTextures, textures::SpeciesTextures},
 };
@@ -26,13 +26,12 @@ pub(crate) struct SpeciesImages {
 impl SpeciesImages {
     /// With `compresses`, in blocks, where the device reads these: a fifth as many bytes.
     pub fn new(textures: &SpeciesTextures, compresses: bool) -> Self {
-        let image = |texture, channels, address_mode, coarsest_mip| match compresses {
-            true => compressed_image(texture, channels, address_mode, coarsest_mip),
-            false => image(texture, address_mode, coarsest_mip),
-        };
         let BarkTextures { base_colour, normal, surface } = &textures.bark;
-        let repeating = |texture, channels| image(texture, channels, ImageAddressMode::Repeat, ALL_MIPS);
-        let masked = |texture| image(texture, Channels::Rgba, ImageAddressMode::ClampToEdge, FOLIAGE_LOD_LIMIT);
+        let repeating =
+            |texture, channels| device_image(texture, channels, compresses, ImageAddressMode::Repeat, ALL_MIPS);
+        let masked = |texture| {
+            device_image(texture, Channels::Rgba, compresses, ImageAddressMode::ClampToEdge, FOLIAGE_LOD_LIMIT)
+        };
         Self {
             bark: repeating(base_colour, Channels::Rgb),
             bark_normal: repeating(normal, Channels::Normal),
