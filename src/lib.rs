@@ -119,7 +119,7 @@ pub mod prelude {
             FallenTree, FallingTree, Forest, ForestChanges, ForestEditor, ForestGround, ForestSettings, NewStem,
             StemId, Stump,
         },
-        grass::{GrassField, GrassGround, GrassLook, GrassPatch, GrassResponse, Sward, Tuft},
+        grass::{GrassField, GrassGround, GrassLook, GrassPatch, GrassResponse, GrassShade, Sward, Tuft},
         query::{TreeColliderSettings, TreeColliders, TreeRays, WindInTrees, WindListener},
         sway::{ActiveSway, InCanopy, LiveSettings, LiveSway, Pusher, PusherShape, SwaySettings, TreeImpulse},
         terrain::{GroundLook, Terrain, TerrainFile, TerrainSettings},

@@ -27,7 +27,9 @@ pub fn spawn_meadow(commands: &mut Commands, landscape: &Landscape, trees: u32, 
             f64::from(landscape.height_m(at.x as f32, at.y as f32))
         };
         let patch = GrassPatch { sward, look, ..default() };
-        commands.spawn((GrassField { patch, patches_per_frame: 16 }, GrassGround(Arc::new(height_m)), NotShadowCaster));
+        let shade = GrassShade(Arc::new(small::Floor::new(trees)));
+        let field = GrassField { patch, patches_per_frame: 16 };
+        commands.spawn((field, GrassGround(Arc::new(height_m)), shade, NotShadowCaster));
     }
 }
 

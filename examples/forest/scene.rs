@@ -96,7 +96,6 @@ impl Scene for ForestScene {
 fn spawn_scene(
     mut commands: Commands,
     scene: Res<ForestScene>,
-    assets: Res<AssetServer>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
     mut plans: ResMut<Assets<ForestPlan>>,
@@ -112,8 +111,7 @@ fn spawn_scene(
         commands.spawn((Forest::new(plans.add(plan)), settings));
         large::spawn_hamlet(&mut commands, &mut meshes, &mut materials, landscape);
     } else {
-        let places = small::places(landscape, options.trees, options.scene.wind.seed);
-        small::spawn_trees(&mut commands, &assets, &places);
+        small::spawn_trees(&mut commands, &mut plans, landscape, options.trees, options.scene.wind.seed);
         // All trees are drawn, from wherever one looks: the ground never takes the colour of crowns.
         look.canopy_from_m = 1e5;
         cover = Some(Arc::new(small::Floor::new(options.trees)));

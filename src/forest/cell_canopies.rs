@@ -1,6 +1,6 @@
 //! The stand that the trees of a cell stand in, which is worked out in the background.
 
-use super::stand::Stand;
+use super::stands::Stands;
 use crate::{
     background::{Work, spawn_work},
     wind::Canopy,
@@ -31,11 +31,11 @@ pub(super) type CanopyTask = Work<CellCanopies>;
 
 impl CellCanopies {
     /// Has the stand of a cell with that least corner and side worked out.
-    pub fn spawn(stand: Arc<Stand>, corner_m: DVec2, cell_m: f32) -> CanopyTask {
+    pub fn spawn(stands: Arc<Stands>, corner_m: DVec2, cell_m: f32) -> CanopyTask {
         spawn_work(move || {
             let side = 1 + ((cell_m / SPACING_M) as u32).clamp(1, MOST_PLACES - 1);
             let spacing_m = cell_m / (side - 1) as f32;
-            Self { corner_m, spacing_m, side, canopies: stand.canopies(corner_m, spacing_m, side) }
+            Self { corner_m, spacing_m, side, canopies: stands.canopies(corner_m, spacing_m, side) }
         })
     }
 

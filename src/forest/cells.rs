@@ -9,9 +9,8 @@ use super::{
     planted_tile::{PlantedTile, cells_of_tile},
     reach::{known_m, tile_of, tile_stream},
     stand::Stand,
+    stands::{OtherStand, Stands},
 };
-#[cfg(feature = "render")]
-use crate::render::{impostors::near_mask::MaskRange, instances::components::HasImpostor};
 use crate::{
     background::{Work, WorkerPanic, spawn_work, take_finished},
     cells::{Cell, CellSet, CellStore, CellStream, Orders, ViewerPose},
@@ -43,9 +42,9 @@ pub struct ForestCells {
     pub(super) settings: ForestSettings,
     pub(super) store: CellStore,
     /// Cells along a side of a tile.
-    tile_cells: i32,
-    stream: CellStream,
-    orders: Orders,
+    pub(super) tile_cells: i32,
+    pub(super) stream: CellStream,
+    pub(super) orders: Orders,
     pub(super) planting: Vec<(IVec2, Work<PackedTile>)>,
     pub(super) tiles: HashMap<IVec2, KnownTile>,
     /// What is other than in the plan; none until that has been found out.
@@ -54,13 +53,13 @@ pub struct ForestCells {
     pub(super) changed_tiles: BTreeMap<(i32, i32), Vec<IVec2>>,
     pub(super) replanting: Vec<(Replanting, Work<PackedTile>)>,
     /// Tiles of the plan before, whose cells are in the store.
-    outdated: usize,
+    pub(super) outdated: usize,
     /// Tiles that impostors have still to be made of, where there are impostors.
     #[cfg(feature = "render")]
     pub(super) for_impostors: Option<Vec<(IVec2, Arc<PlantedTile>)>>,
     pub(super) near: NearTrees,
     /// The wind among its trees, once its species are known; and how often it was another.
-    stand: Option<Arc<Stand>>,
+    stands: Option<Arc<Stands>>,
     stand_generation: u64,
     /// Whether it has to be worked out again, and the task that does.
     pub(super) stand_is_due: bool,
@@ -72,7 +71,7 @@ pub struct ForestCells {
     has_told: bool,
     generation: u64,
     /// The generation since which tiles and numbers of species are the same.
-    tiles_since: u64,
+    pub(super) tiles_since: u64,
 }
 
 /// A tile whose cells are in the store.
@@ -112,7 +111,7 @@ impl ForestCells {
             near: NearTrees::new(&settings, cell_m, tile_cells, planter.cells())?,
             planter: Arc::new(planter),
             ground,
-            stand: None,
+            stands: None,
             stand_generation: 0,
             stand_is_due: false,
             stand_task: None,
@@ -205,8 +204,8 @@ impl ForestCells {
     }
 
     /// The wind among its trees; none until its species are known.
-    pub(super) fn stand(&self) -> Option<&Arc<Stand>> {
-        self.stand.as_ref()
+    pub(super) fn stands(&self) -> Option<&Arc<Stands>> {
+        self.stands.as_ref()
     }
 
     /// Grows whenever the stand is another.
@@ -215,7 +214,15 @@ impl ForestCells {
     }
 
     pub(super) fn set_stand(&mut self, stand: Stand) {
-        self.stand = Some(Arc::new(stand));
+        let others = self.stands.as_ref().map_or_else(Vec::new, |stands| stands.others.clone());
+        self.stands = Some(Arc::new(Stands { own: Arc::new(stand), others }));
+        self.stand_generation += 1;
+    }
+
+    /// Takes over what other forests there are, once its own stand is known.
+    pub(super) fn set_other_stands(&mut self, others: Vec<OtherStand>) {
+        let Some(stands) = &mut self.stands else { return };
+        *stands = Arc::new(Stands { own: stands.own.clone(), others });
         self.stand_generation += 1;
     }
 
@@ -338,72 +345,6 @@ impl ForestCells {
             if let Some(tiles) = &mut self.for_impostors {
                 tiles.retain(|(other, _)| other != place);
             }
-        }
-    }
-}
-
-/// What impostors need of a forest.
-#[cfg(feature = "render")]
-impl ForestCells {
-    /// What tells its trees of their impostors; none where there are no impostors.
-    pub(super) fn impostor(&self) -> Option<HasImpostor> {
-        (self.settings.far_to_m > 0.0).then_some(HasImpostor { from_m: self.impostors_from_m })
-    }
-
-    /// The distances of its impostors.
-    pub(super) fn mask_range(&self) -> MaskRange {
-        let (cell_m, far_to_m) = (self.planter.cell_m(), self.settings.far_to_m);
-        MaskRange { cell_m, far_to_m, from_m: self.impostors_from_m }
-    }
-
-    /// The generation since which tiles and numbers of species are the same.
-    pub(super) fn tiles_since(&self) -> u64 {
-        self.tiles_since
-    }
-
-    /// Tiles that were dropped in this frame.
-    pub(super) fn dropped_tiles(&self) -> &[IVec2] {
-        &self.orders.drop
-    }
-
-    /// Whether a tile is planted, be it after the plan before.
-    pub(super) fn has_tile(&self, tile: IVec2) -> bool {
-        self.tiles.contains_key(&tile)
-    }
-
-    /// Keeps every tile from now on until impostors are made of it, or keeps none any more.
-    pub(super) fn keep_tiles_for_impostors(&mut self, keeps: bool) {
-        if keeps != self.for_impostors.is_some() {
-            self.for_impostors = keeps.then(Vec::new);
-        }
-    }
-
-    /// Whether there are tiles that impostors have still to be made of.
-    pub(super) fn has_tiles_for_impostors(&self) -> bool {
-        self.for_impostors.as_ref().is_some_and(|tiles| !tiles.is_empty())
-    }
-
-    /// Takes so many of the tiles that impostors have still to be made of, the first ones.
-    pub(super) fn take_tiles_for_impostors(&mut self, most: usize) -> Vec<(IVec2, Arc<PlantedTile>)> {
-        let Some(tiles) = &mut self.for_impostors else { return Vec::new() };
-        tiles.drain(..most.min(tiles.len())).collect()
-    }
-
-    /// Where not all tiles are kept that impostors have to be made of, all are planted again.
-    pub(super) fn replant_lost_tiles(&mut self) {
-        if self.for_impostors.as_ref().is_none_or(|kept| kept.len() < self.tiles.len()) {
-            self.replant();
-        }
-    }
-
-    /// Has all tiles planted again, and takes them for others than they were.
-    pub(super) fn replant(&mut self) {
-        if let Ok(stream) = tile_stream(&self.planter, &self.settings, self.tile_cells) {
-            self.stream = stream;
-            self.planting.clear();
-            self.replanting.clear();
-            self.outdated = self.tiles.len();
-            self.tiles.values_mut().for_each(|tile| *tile = KnownTile { fingerprint: None, is_outdated: true });
         }
     }
 }

@@ -7,7 +7,7 @@ use super::{
     journal::{ChangedStem, Journal},
     near_cell::NearTree,
     reach::tile_of,
-    stand::REACH_M,
+    stands::REACH_M,
 };
 use crate::{background::take_finished, scatter::Stem, tree::Species};
 use bevy::{platform::collections::HashSet, prelude::*};

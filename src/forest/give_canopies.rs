@@ -7,12 +7,12 @@ use bevy::prelude::*;
 /// Gives the trees of near cells their stand, when their forest's is ready.
 pub(super) fn give_canopies(mut commands: Commands, mut forests: Query<&mut ForestCells>) {
     for mut forest in &mut forests {
-        let Some(stand) = forest.stand().cloned() else { continue };
+        let Some(stands) = forest.stands().cloned() else { continue };
         let (cell_m, generation) = (forest.planter().cell_m(), forest.stand_generation());
         let near = &mut forest.bypass_change_detection().near;
         near.give_canopies(
             generation,
-            |cell| CellCanopies::spawn(stand.clone(), stand.planter.corner_m(cell), cell_m),
+            |cell| CellCanopies::spawn(stands.clone(), stands.own.planter.corner_m(cell), cell_m),
             |tree, canopy| {
                 commands.entity(tree).try_insert(InCanopy(canopy));
             },

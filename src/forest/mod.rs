@@ -12,10 +12,11 @@
 //!   again. [`ForestEditor`] refuses what cannot be; `stems` tells which stem stands where, `messages` what becomes of trees.
 //! - `falling` lets trees fall. `renew_stands` has the wind among the trees follow what was felled and planted (`stand_changes`).
 //! - `near_services` gives cells a wind of their own and the nearest trees beams and leaves as entities, where that is asked for.
-//! - `stand` knows how high and dense the trees about a place are, and how open it is, for the wind among them; `stand_species` makes it
-//!   ready, `cell_canopies` works it out for a cell, `give_canopies` gives it to near trees.
+//! - `stand` knows how high and dense a forest's trees about a place are; `stand_species` makes it ready. `stands` has those of all forests
+//!   (`share_stands`), and how open a place is to each side, for the wind and the light there; `cell_canopies` works that out for a cell,
+//!   `give_canopies` gives it to near trees.
 //! - `missing_species` tells which species of a plan cannot be loaded.
-//! - With the feature `render`, `impostors` draws the trees beyond, a tile of cells at a time.
+//! - With the feature `render`, `impostors` draws the trees beyond, a tile of cells at a time, which `cells_for_impostors` gives it.
 //! - With it, too, `cull` hides near cells out of view, `layers` gives trees and impostors the render layers of their forest, and `diagnose`
 //!   tells how the forest does.
 //! - [`PlanCover`] tells the ground where the woods are, so that they are seen beyond the last tree.
@@ -25,6 +26,8 @@ mod begin;
 mod cell_canopies;
 mod cell_planter;
 mod cells;
+#[cfg(feature = "render")]
+mod cells_for_impostors;
 mod change_index;
 mod changed_cells;
 mod changes;
@@ -53,9 +56,11 @@ mod planted_tile;
 mod plugin;
 mod reach;
 mod renew_stands;
+mod share_stands;
 mod stand;
 mod stand_changes;
 mod stand_species;
+mod stands;
 mod stem_id;
 mod stems;
 mod stream_trees;

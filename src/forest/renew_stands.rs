@@ -32,7 +32,7 @@ pub(super) fn renew_stands(mut frames: Local<u32>, season: Res<Season>, mut fore
         if !frames.is_multiple_of(FRAMES_BETWEEN) {
             continue;
         }
-        let Some(stand) = forest.stand() else { continue };
+        let Some(stand) = forest.stands().map(|stands| &stands.own) else { continue };
         let now = |species: &Option<StandSpecies>| species.map(|species| species.in_season(season.wrapped()));
         if !forest.stand_is_due && stand.species.iter().all(|species| now(species) == *species) {
             continue;

@@ -83,7 +83,7 @@ pub(super) fn prepare_stands(
             library.measure(*id, species);
         }
     }
-    for handle in forests.iter().filter(|forest| forest.stand().is_none()).flat_map(ForestCells::species) {
+    for handle in forests.iter().filter(|forest| forest.stands().is_none()).flat_map(ForestCells::species) {
         if let Some(species) = valid(handle.id()).filter(|_| !library.is_asked_for(handle.id())) {
             library.measure(handle.id(), species);
         }
@@ -110,7 +110,7 @@ pub(super) fn prepare_stands(
     });
     for mut forest in &mut forests {
         let has_other = forest.species().iter().any(|species| measured.contains(&species.id()));
-        if forest.stand().is_some() && !has_other {
+        if forest.stands().is_some() && !has_other {
             continue;
         }
         let is_settled = |handle: &Handle<Species>| {

@@ -43,6 +43,8 @@ pub struct Blade {
     pub dryness: f32,
     /// Place in the order of thinning, 0 to 1: the last ones are left out first.
     pub rank: f32,
+    /// Share of the ground there that is under trees, 0 to 1.
+    pub under_trees: f32,
 }
 
 /// The blades of a sward over `ground` in the patch's coordinates, in the order of their rank. Where its height is not a number,
@@ -84,6 +86,7 @@ fn layout_tuft(sward: &Sward, number: u32, ground: &impl Ground) -> Vec<Blade> {
             droop_rad: tuft.droop * FRAC_PI_2 * between(0.0, 1.0),
             dryness: if is_dry { between(GREENEST, 1.0) } else { between(0.0, GREENEST) },
             rank: 0.0,
+            under_trees: 0.0,
         }
     });
     blades.filter(|blade| blade.root.y.is_finite()).collect()

@@ -8,6 +8,7 @@ use crate::{
     background::{Work, spawn_work},
     ground::{Ground, LevelGround},
     setting::SettingError,
+    terrain::Cover,
 };
 use bevy::{
     prelude::*,
@@ -49,6 +50,11 @@ impl GrassPatch {
 #[derive(Component, Clone)]
 pub struct GrassGround(pub Arc<dyn Ground>);
 
+/// Woods over a [`GrassPatch`], in the patch's own coordinates: grass below them has less of the sky's light. Read with the ground, on a
+/// background thread.
+#[derive(Component, Clone)]
+pub struct GrassShade(pub Arc<dyn Cover>);
+
 /// The blades of a patch. Written in [`WindwoodSystems::Bake`](crate::WindwoodSystems::Bake).
 #[derive(Component, Clone, Debug)]
 #[component(immutable)]
@@ -67,16 +73,16 @@ pub(super) struct MeadowLayout(Work<Meadow>);
 pub(super) fn start_meadow_layouts(
     mut commands: Commands,
     patches: Query<
-        (Entity, Ref<GrassPatch>, Option<Ref<GrassGround>>, Option<&Meadow>),
-        Or<(Changed<GrassPatch>, Changed<GrassGround>)>,
+        (Entity, Ref<GrassPatch>, Option<Ref<GrassGround>>, Option<Ref<GrassShade>>, Option<&Meadow>),
+        Or<(Changed<GrassPatch>, Changed<GrassGround>, Changed<GrassShade>)>,
     >,
 ) {
-    for (entity, patch, ground, meadow) in &patches {
+    for (entity, patch, ground, shade, meadow) in &patches {
         if let Err(error) = patch.validate() {
             warn!("grass patch {entity}: {error}; the last good meadow stays");
             continue;
         }
-        let is_ground_new = ground.as_ref().is_some_and(Ref::is_changed);
+        let is_ground_new = ground.as_ref().is_some_and(Ref::is_changed) || shade.as_ref().is_some_and(Ref::is_changed);
         if let Some(meadow) = meadow.filter(|meadow| meadow.patch.sward == patch.sward && !is_ground_new) {
             // Only the look has changed: the blades stay, and a layout that runs is out of date.
             let blades = meadow.blades.clone();
@@ -88,7 +94,15 @@ pub(super) fn start_meadow_layouts(
         }
         let patch = GrassPatch::clone(&patch);
         let ground = ground.map_or_else(|| Arc::new(LevelGround::default()) as Arc<dyn Ground>, |own| own.0.clone());
-        let task = spawn_work(move || Meadow { blades: Arc::new(layout_blades(&patch.sward, &ground)), patch });
+        let shade = shade.map(|shade| shade.0.clone());
+        let task = spawn_work(move || {
+            let mut blades = layout_blades(&patch.sward, &ground);
+            if let Some(shade) = shade {
+                let share = |blade: &Blade| shade.share(blade.root.xz().as_dvec2());
+                blades.iter_mut().for_each(|blade| blade.under_trees = share(blade).clamp(0.0, 1.0));
+            }
+            Meadow { blades: Arc::new(blades), patch }
+        });
         commands.entity(entity).insert(MeadowLayout(task));
     }
 }

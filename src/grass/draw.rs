@@ -33,6 +33,7 @@ impl Plugin for GrassDrawPlugin {
         }
         load_shader_library!(app, "shaders/blade.wesl");
         embedded_asset!(app, "shaders/grass.wesl");
+        embedded_asset!(app, "shaders/grass_colour.wesl");
         let can_draw = resource_exists::<RenderCapabilities>;
         app.add_plugins(MaterialPlugin::<GrassMaterial>::default()).add_observer(remove_patch_meshes).add_systems(
             Update,

@@ -2,7 +2,7 @@
 
 use super::{
     components::GrassPatch,
-    mesh::{ATTRIBUTE_BLADE, ATTRIBUTE_BLADE_TURN},
+    mesh::{ATTRIBUTE_BLADE, ATTRIBUTE_BLADE_TURN, ATTRIBUTE_UNDER_TREES},
     settings::GrassLook,
 };
 use crate::{
@@ -50,7 +50,8 @@ struct GrassUniform {
     period_s: f32,
     thins_from_m: f32,
     vanishes_at_m: f32,
-    padding: Vec2,
+    sky_under_trees: f32,
+    padding: f32,
 }
 
 impl From<&GrassPatch> for GrassUniform {
@@ -66,7 +67,8 @@ impl From<&GrassPatch> for GrassUniform {
             period_s: FLUTTER_PERIOD_S as f32,
             thins_from_m: look.thins_from_m,
             vanishes_at_m: look.vanishes_at_m,
-            padding: Vec2::ZERO,
+            sky_under_trees: look.sky_under_trees,
+            padding: 0.0,
         }
     }
 }
@@ -93,10 +95,15 @@ pub(super) fn base_material(look: &GrassLook) -> StandardMaterial {
 }
 
 const GRASS_SHADER: &str = "embedded://bevy_windwood/grass/shaders/grass.wesl";
+const COLOUR_SHADER: &str = "embedded://bevy_windwood/grass/shaders/grass_colour.wesl";
 
 impl MaterialExtension for GrassExtension {
     fn vertex_shader() -> ShaderRef {
         GRASS_SHADER.into()
+    }
+
+    fn fragment_shader() -> ShaderRef {
+        COLOUR_SHADER.into()
     }
 
     fn prepass_vertex_shader() -> ShaderRef {
@@ -119,6 +126,7 @@ impl MaterialExtension for GrassExtension {
             Mesh::ATTRIBUTE_UV_0.at_shader_location(2),
             ATTRIBUTE_BLADE.at_shader_location(8),
             ATTRIBUTE_BLADE_TURN.at_shader_location(9),
+            ATTRIBUTE_UNDER_TREES.at_shader_location(10),
         ];
         specialize(descriptor, layout, &attributes, &["WINDWOOD_GRASS", "VERTEX_COLORS"])
     }

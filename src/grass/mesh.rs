@@ -20,6 +20,10 @@ pub(super) const ATTRIBUTE_BLADE: MeshVertexAttribute =
 pub(super) const ATTRIBUTE_BLADE_TURN: MeshVertexAttribute =
     MeshVertexAttribute::new("BladeTurn", 0x424c_5455, VertexFormat::Float32x4);
 
+/// Share of the ground that is under trees: `under_trees` of the shader.
+pub(super) const ATTRIBUTE_UNDER_TREES: MeshVertexAttribute =
+    MeshVertexAttribute::new("UnderTrees", 0x554e_4452, VertexFormat::Float32);
+
 /// Vertices of a blade: two at each joint, one at the tip.
 const VERTICES: u32 = 2 * LINKS as u32 + 1;
 
@@ -51,12 +55,14 @@ pub(super) fn swaying_mesh(blades: &[Blade]) -> Mesh {
     let turns =
         each(&|number, blade| [blade.azimuth_rad, blade.lean_rad, blade.droop_rad, (number as f32 * GOLDEN).fract()]);
     let roots = blades.iter().flat_map(|blade| std::iter::repeat_n(blade.root.to_array(), VERTICES as usize));
+    let shares = blades.iter().flat_map(|blade| std::iter::repeat_n(blade.under_trees, VERTICES as usize));
     let uvs = blades.iter().flat_map(|_| corners());
     Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
         .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, roots.collect::<Vec<_>>())
         .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs.collect::<Vec<_>>())
         .with_inserted_attribute(ATTRIBUTE_BLADE, shapes)
         .with_inserted_attribute(ATTRIBUTE_BLADE_TURN, turns)
+        .with_inserted_attribute(ATTRIBUTE_UNDER_TREES, shares.collect::<Vec<_>>())
         .with_inserted_indices(indices(blades.len() as u32))
 }
 

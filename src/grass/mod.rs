@@ -24,7 +24,7 @@ mod material;
 #[cfg(feature = "render")]
 mod mesh;
 
-pub use components::{GrassGround, GrassPatch, Meadow};
+pub use components::{GrassGround, GrassPatch, GrassShade, Meadow};
 pub use ecs::{GrassField, GrassFieldPatches};
 pub use plugin::GrassPlugin;
 pub use settings::{GrassLook, GrassResponse, Sward, Tuft};

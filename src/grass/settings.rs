@@ -86,6 +86,8 @@ pub struct GrassLook {
     pub dry_colour: [f32; 3],
     /// Share of the light that passes through a blade, 0 to 1.
     pub translucency: f32,
+    /// Share of the sky's light that comes through closed crowns to the grass below them ([`GrassShade`](super::GrassShade)), 0 to 1.
+    pub sky_under_trees: f32,
     /// Farther than this, m, ever fewer blades are drawn, and the rest so much wider: 0.1 to 10000.
     pub thins_from_m: f32,
     /// At this distance, m, the last blades have shrunk to nothing: 1 to 10000.
@@ -99,6 +101,7 @@ impl Default for GrassLook {
             tip_colour: [0.20, 0.29, 0.065],
             dry_colour: [0.31, 0.26, 0.11],
             translucency: 0.35,
+            sky_under_trees: 0.1,
             thins_from_m: 18.0,
             vanishes_at_m: 90.0,
         }

@@ -29,6 +29,7 @@ pub(crate) mod pipeline;
 mod plugin;
 pub(crate) mod settings;
 mod shader_files;
+mod sky_share;
 pub(crate) mod species;
 pub(crate) mod texture_image;
 pub(crate) mod wind_exposure;

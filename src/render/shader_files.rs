@@ -12,6 +12,7 @@ pub(crate) fn load_shaders(app: &mut App) {
     load_shader_library!(app, "shaders/instances.wesl");
     load_shader_library!(app, "shaders/green_wood.wesl");
     load_shader_library!(app, "shaders/leaf.wesl");
+    load_shader_library!(app, "shaders/leaf_shade.wesl");
     load_shader_library!(app, "shaders/lighting.wesl");
     load_shader_library!(app, "shaders/lod.wesl");
     load_shader_library!(app, "shaders/packed_vertex.wesl");
@@ -22,6 +23,7 @@ pub(crate) fn load_shaders(app: &mut App) {
     load_shader_library!(app, "shaders/tree_transform.wesl");
     load_shader_library!(app, "shaders/vertex_output.wesl");
     load_shader_library!(app, "shaders/view_direction.wesl");
+    load_shader_library!(app, "shaders/sky_share.wesl");
     load_shader_library!(app, "shaders/stand_wind.wesl");
     load_shader_library!(app, "shaders/wind.wesl");
     load_shader_library!(app, "shaders/wind_sources.wesl");

@@ -114,6 +114,9 @@ pub struct GroundLook {
     pub pale_litter: [f32; 3],
     /// Crowns seen from afar.
     pub canopy: [f32; 3],
+    /// Share of the sky's light that comes through closed crowns to the ground: 2 to 10% in summer woods, about a half in bare ones.
+    /// domain: \[0, 1\].
+    pub sky_under_trees: f32,
     /// Slopes at which earth shows between the grass, and at which there is only rock. units: degrees, domain: 0 to 90.
     pub bare_slope_deg: [f32; 2],
     /// Above this there is no more than short, dry grass. units: m, domain: \[-100000, 100000\].
@@ -142,6 +145,7 @@ impl Default for GroundLook {
             litter: [0.29, 0.23, 0.16],
             pale_litter: [0.52, 0.41, 0.26],
             canopy: [0.11, 0.165, 0.095],
+            sky_under_trees: 0.1,
             bare_slope_deg: [27.0, 40.0],
             grass_line_m: 1e5,
             snow_line_m: 1e5,
@@ -174,6 +178,7 @@ impl GroundLook {
         let [earth, rock] = self.bare_slope_deg;
         require("bare_slope_deg[0]", earth, 0.0..=90.0)?;
         require("bare_slope_deg[1]", rock, earth..=90.0)?;
+        require("sky_under_trees", self.sky_under_trees, 0.0..=1.0)?;
         require("grass_line_m", self.grass_line_m, -1e5..=1e5)?;
         require("snow_line_m", self.snow_line_m, -1e5..=1e5)?;
         require("line_blur_m", self.line_blur_m, 0.1..=1e4)?;

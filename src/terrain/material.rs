@@ -71,7 +71,7 @@ struct LookUniform {
     line_blur_m: f32,
     per_texture_m: f32,
     canopy_from_m: f32,
-    padding: f32,
+    sky_under_trees: f32,
 }
 
 impl From<&GroundLook> for LookUniform {
@@ -94,7 +94,7 @@ impl From<&GroundLook> for LookUniform {
             line_blur_m: look.line_blur_m,
             per_texture_m: 1.0 / look.texture_m,
             canopy_from_m: look.canopy_from_m,
-            padding: 0.0,
+            sky_under_trees: look.sky_under_trees,
         }
     }
 }

@@ -13,6 +13,7 @@
 mod near_mask;
 mod plugin;
 mod species;
+mod tile_canopies;
 mod tile_mesh;
 mod tiles;
 

@@ -2,22 +2,21 @@
 
 use super::{
     species::ImpostorSpeciesLibrary,
+    tile_canopies::{BlockCanopies, Renewal, block_canopies},
     tile_mesh::{ImpostorShape, TileMesh, tile_meshes},
 };
 use crate::{
     background::{Work, spawn_work},
-    forest::{cells::ForestCells, stand::Stand},
+    forest::cells::ForestCells,
     render::{
         RenderCapabilities,
         draw::layers::insert_layers_and_culling,
-        impostors::near_mask::{CANOPY_BLOCKS, MaskRange, NearMask, NearMasks},
+        impostors::near_mask::{MaskRange, NearMask, NearMasks},
     },
     tree::Species,
-    wind::{Canopy, PackedCanopy},
 };
 use bevy::{
     camera::visibility::{NoAutoAabb, RenderLayers},
-    math::DVec2,
     platform::collections::{HashMap, HashSet},
     prelude::*,
     tasks::{block_on, poll_once},
@@ -35,19 +34,23 @@ pub struct ForestImpostors {
     lacking_species: usize,
     making: Vec<(IVec2, Work<MadeTile>)>,
     tiles: HashMap<IVec2, Tile>,
+    /// The newest of the forest's stands that all tiles have, and those that are being worked out for some.
+    stand_generation: u64,
+    renewal: Option<Renewal>,
     is_complete: bool,
     /// The near cells that are marked in the masks of the tiles, and what these were last written for.
     marked: HashSet<IVec2>,
     marked_for: Option<(u64, MaskRange)>,
 }
 
-/// The meshes of a tile, and the canopies of its blocks.
-type MadeTile = (Vec<TileMesh>, Vec<PackedCanopy>);
+/// The meshes of a tile, the canopies of its blocks, and the forest's [`ForestCells::stand_generation`] that these are of.
+type MadeTile = (Vec<TileMesh>, BlockCanopies, u64);
 
 struct Tile {
     /// One mesh a species.
     meshes: Vec<Entity>,
     mask: NearMask,
+    stand_generation: u64,
     trees: usize,
     bytes: usize,
 }
@@ -64,6 +67,8 @@ impl ForestImpostors {
             lacking_species: 0,
             making: Vec::new(),
             tiles: HashMap::default(),
+            stand_generation: 0,
+            renewal: None,
             is_complete: false,
             marked: HashSet::default(),
             marked_for: None,
@@ -150,7 +155,7 @@ pub(super) fn stream_impostor_tiles(
         let is_wanted = forest.settings().far_to_m > 0.0;
         forest.keep_tiles_for_impostors(is_wanted);
         let is_baked = forest.species().iter().all(|species| library.is_settled(species, &assets));
-        let is_ready = is_baked && forest.stand().is_some();
+        let is_ready = is_baked && forest.stands().is_some();
         let mut tiles = match tiles {
             Some(tiles) if is_wanted && tiles.tiles_since == forest.tiles_since() => tiles,
             None if !is_wanted => continue,
@@ -167,6 +172,7 @@ pub(super) fn stream_impostor_tiles(
         tiles.receive(&forest, &library, &spawner, &mut commands, (&mut meshes, &mut masks));
         if is_ready {
             tiles.make_tiles(&mut forest, &library);
+            tiles.renew_canopies(&forest, &mut masks);
         }
         tiles.is_complete = forest.is_planted() && tiles.making.is_empty() && !forest.has_tiles_for_impostors();
     }
@@ -180,13 +186,6 @@ fn begin(entity: Entity, forest: &mut ForestCells, is_wanted: bool, commands: &m
     } else {
         forest_entity.try_remove::<ForestImpostors>();
     }
-}
-
-/// The stand in the middle of each block of a tile with that least corner and side, m.
-fn block_canopies(stand: &Stand, corner_m: DVec2, tile_m: f32) -> Vec<PackedCanopy> {
-    let block_m = tile_m / CANOPY_BLOCKS as f32;
-    let canopies = stand.canopies(corner_m + f64::from(0.5 * block_m), block_m, CANOPY_BLOCKS);
-    canopies.iter().map(Canopy::pack).collect()
 }
 
 /// Spawns the meshes of a forest's tiles.
@@ -223,19 +222,48 @@ impl ForestImpostors {
         if room == 0 || !forest.has_tiles_for_impostors() {
             return;
         }
-        let Some(stand) = forest.stand().cloned() else { return };
-        let tile_m = self.cells as f32 * forest.planter().cell_m();
+        let Some(stands) = forest.stands().cloned() else { return };
+        let (tile_m, generation) = (self.cells as f32 * forest.planter().cell_m(), forest.stand_generation());
         let shape = |species: &Handle<Species>| library.get(species.id()).map(ImpostorShape::from);
         let shapes: Arc<[Option<ImpostorShape>]> = forest.species().iter().map(shape).collect();
         for (place, planted) in forest.take_tiles_for_impostors(room) {
-            let (shapes, stand, corner) =
-                (shapes.clone(), stand.clone(), forest.planter().corner_m(place * self.cells));
+            let (shapes, stands, corner) =
+                (shapes.clone(), stands.clone(), forest.planter().corner_m(place * self.cells));
             let task = spawn_work(move || {
-                (tile_meshes(&planted, corner.as_vec2(), &shapes), block_canopies(&stand, corner, tile_m))
+                (tile_meshes(&planted, corner.as_vec2(), &shapes), block_canopies(&stands, corner, tile_m), generation)
             });
             // What was planted before is out of date.
             self.making.retain(|(other, _)| *other != place);
             self.making.push((place, task));
+        }
+    }
+
+    /// Has the canopies of tiles worked out again for which the forest has other stands.
+    fn renew_canopies(&mut self, forest: &ForestCells, masks: &mut NearMasks) {
+        if let Some(renewal) = &mut self.renewal {
+            let Some((generation, renewed)) = renewal.finished() else { return };
+            self.renewal = None;
+            for (place, canopies) in renewed {
+                let Some(tile) = self.tiles.get_mut(&place).filter(|tile| tile.stand_generation < generation) else {
+                    continue;
+                };
+                masks.set_canopies(&tile.mask, &canopies);
+                tile.stand_generation = generation;
+            }
+            self.stand_generation = generation;
+        }
+        let Some(stands) = forest.stands().filter(|_| self.stand_generation != forest.stand_generation()) else {
+            return;
+        };
+        let generation = forest.stand_generation();
+        let planter = forest.planter();
+        let outdated = self.tiles.iter().filter(|(_, tile)| tile.stand_generation < generation);
+        let tiles: Vec<_> = outdated.map(|(place, _)| (*place, planter.corner_m(*place * self.cells))).collect();
+        if self.making.is_empty() && tiles.is_empty() {
+            self.stand_generation = generation;
+        } else if !tiles.is_empty() {
+            let tile_m = self.cells as f32 * planter.cell_m();
+            self.renewal = Some(Renewal::start(generation, stands.clone(), tiles, tile_m));
         }
     }
 
@@ -251,7 +279,7 @@ impl ForestImpostors {
         let Self { making, tiles, cells, marked, .. } = self;
         making.retain_mut(|(place, task)| {
             let Some(made) = block_on(poll_once(task)) else { return true };
-            let (made, canopies) = made.unwrap_or_else(|panic| {
+            let (made, canopies, stand_generation) = made.unwrap_or_else(|panic| {
                 error_once!("forest: {panic}; there are no impostors where its workers do");
                 Default::default()
             });
@@ -265,9 +293,10 @@ impl ForestImpostors {
                 for cell in marked.iter().map(|cell| cell - first).filter(|cell| is_inside(*cell)) {
                     masks.set(&mask, cell.as_uvec2(), true);
                 }
-                Tile { meshes: Vec::new(), mask, trees: 0, bytes: 0 }
+                Tile { meshes: Vec::new(), mask, stand_generation, trees: 0, bytes: 0 }
             });
             masks.set_canopies(&tile.mask, &canopies);
+            tile.stand_generation = stand_generation;
             tile.meshes.drain(..).for_each(|mesh| commands.entity(mesh).despawn());
             (tile.trees, tile.bytes) = (0, 0);
             let corner = forest.planter().corner_m(first).as_vec2();

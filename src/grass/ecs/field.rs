@@ -2,11 +2,12 @@
 
 use crate::{
     grass::{
-        components::{GrassGround, GrassPatch},
+        components::{GrassGround, GrassPatch, GrassShade},
         field_grid::{GridPatch, patches_within},
     },
     ground::{Ground, LevelGround},
     setting::{SettingError, require},
+    terrain::Cover,
     viewpoint::Viewpoints,
 };
 use bevy::{camera::visibility::RenderLayers, math::DVec2, prelude::*};
@@ -106,12 +107,25 @@ impl Ground for MovedGround {
     }
 }
 
+/// Woods over a field as one of its patches has them.
+struct MovedCover {
+    cover: Arc<dyn Cover>,
+    origin: DVec2,
+}
+
+impl Cover for MovedCover {
+    fn share(&self, place: DVec2) -> f32 {
+        self.cover.share(self.origin + place)
+    }
+}
+
 /// A field, and what its patches take over from it.
 type FieldData = (
     Entity,
     Ref<'static, GrassField>,
     &'static GlobalTransform,
     Option<Ref<'static, GrassGround>>,
+    Option<Ref<'static, GrassShade>>,
     Option<&'static RenderLayers>,
     &'static mut GrassFieldPatches,
 );
@@ -119,9 +133,9 @@ type FieldData = (
 /// Takes over changed settings and ground.
 pub(crate) fn apply_grass_fields(
     mut commands: Commands,
-    mut fields: Query<FieldData, Or<(Changed<GrassField>, Changed<GrassGround>)>>,
+    mut fields: Query<FieldData, Or<(Changed<GrassField>, Changed<GrassGround>, Changed<GrassShade>)>>,
 ) {
-    for (entity, field, _, ground, _, mut patches) in &mut fields {
+    for (entity, field, _, ground, shade, _, mut patches) in &mut fields {
         if field.is_changed() && patches.field.as_ref() != Some(&field) {
             if let Err(error) = field.validate() {
                 warn!("grass field {entity}: {error}; the last good field stays");
@@ -129,7 +143,8 @@ pub(crate) fn apply_grass_fields(
             }
             patches.replace(&field, &mut commands);
         }
-        if ground.is_some_and(|ground| ground.is_changed() && !ground.is_added()) {
+        let is_shade_new = shade.is_some_and(|shade| shade.is_changed() && !shade.is_added());
+        if is_shade_new || ground.is_some_and(|ground| ground.is_changed() && !ground.is_added()) {
             patches.remove_all(&mut commands);
         }
     }
@@ -142,7 +157,7 @@ pub(crate) fn move_grass_fields(
     mut fields: Query<FieldData>,
     mut viewers_m: Local<Vec<Vec2>>,
 ) {
-    for (entity, _, transform, ground, layers, mut patches) in &mut fields {
+    for (entity, _, transform, ground, shade, layers, mut patches) in &mut fields {
         let to_field = transform.affine().inverse();
         viewers_m.clear();
         viewers_m.extend(viewpoints.iter().map(|place| to_field.transform_point3(place).xz()));
@@ -160,6 +175,10 @@ pub(crate) fn move_grass_fields(
             let moved = MovedGround { ground: ground.clone(), origin: middle_m.as_dvec2() };
             let at = Transform::from_xyz(middle_m.x, 0.0, middle_m.y);
             let mut spawned = commands.spawn((ChildOf(entity), grass, GrassGround(Arc::new(moved)), at));
+            if let Some(shade) = &shade {
+                let cover = MovedCover { cover: shade.0.clone(), origin: middle_m.as_dvec2() };
+                spawned.insert(GrassShade(Arc::new(cover)));
+            }
             if let Some(layers) = layers {
                 spawned.insert(layers.clone());
             }

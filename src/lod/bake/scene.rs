@@ -219,7 +219,7 @@ fn wood_vertices(wood: &WoodVertices, kind: &Wood) -> Vec<Vertex> {
 fn leaf_vertices(leaves: &LeafVertices) -> impl Iterator<Item = Vertex> {
     (0..leaves.positions.len()).map(|index| {
         let tint = leaves.axis[index][3];
-        let light = (0.25 + 0.75 * leaves.sway[index][3]) * (0.85 + 0.35 * tint);
+        let light = (0.25 + 0.75 * leaves.sway[index][3]).sqrt() * (0.85 + 0.35 * tint);
         Vertex {
             position: Vec3::from_array(leaves.positions[index]),
             normal: Vec3::from_array(leaves.normals[index]),
