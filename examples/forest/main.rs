@@ -11,7 +11,6 @@
 //! `cargo run --example forest -- --help` lists the options.
 
 mod large;
-mod meadow;
 mod options;
 mod scene;
 mod small;

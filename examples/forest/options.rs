@@ -55,6 +55,8 @@ pub enum View {
 pub enum Light {
     /// A clear afternoon.
     Afternoon,
+    /// The sun is low, and mist lies among the trees.
+    Morning,
     /// The sun is about to set.
     Dusk,
     /// Clouds.
@@ -65,6 +67,7 @@ impl Light {
     pub fn daylight(self) -> Daylight {
         match self {
             Self::Afternoon => Daylight::AFTERNOON,
+            Self::Morning => Daylight::MORNING,
             Self::Dusk => Daylight::DUSK,
             Self::Storm => Daylight::STORM,
         }

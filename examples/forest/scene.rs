@@ -1,11 +1,12 @@
 //! Ground, sky, sun and trees.
 
 use crate::{
-    large, meadow,
-    options::{Options, View},
+    large,
+    options::{Light, Options, View},
     small,
     support::{
         landscape::{FINEST_CELL_M, Landscape},
+        meadow, mist,
         options::SceneOptions,
         scene::Scene,
     },
@@ -15,8 +16,11 @@ use bevy::{camera::Exposure, prelude::*};
 use bevy_windwood::{prelude::*, scatter::ForestPlan, terrain::Cover};
 use std::sync::Arc;
 
-/// Under trees there is a fifth of the light: an eye that gets used to it sees some two stops more.
-const INSIDE: Exposure = Exposure { ev100: Exposure::EV100_BLENDER - 1.4 };
+/// Under trees there is a tenth of the sky's light: an eye that gets used to it sees some two stops more.
+const INSIDE: Exposure = Exposure { ev100: Exposure::EV100_BLENDER - 2.1 };
+
+/// Width of the mist of a morning about the camera's first place, m.
+const MIST_M: f32 = 180.0;
 
 /// What the scene is made from.
 #[derive(Resource)]
@@ -116,7 +120,8 @@ fn spawn_scene(
         look.canopy_from_m = 1e5;
         cover = Some(Arc::new(small::Floor::new(options.trees)));
         undergrowth::spawn_undergrowth(&mut commands, &mut plans, landscape, options.trees, options.scene.wind.seed);
-        meadow::spawn_meadow(&mut commands, landscape, options.trees, options.scene.wind.seed);
+        let meadow_m = small::meadow(landscape, options.trees, options.scene.wind.seed);
+        meadow::spawn_meadow(&mut commands, meadow_m, cover.clone(), options.scene.wind.seed);
     }
     let finest_cell_m = FINEST_CELL_M;
     commands.spawn((
@@ -125,5 +130,10 @@ fn spawn_scene(
         TerrainSettings { finest_cell_m, reach_m: 14_000.0, chunks_per_frame: 64, builds_at_once: 64, ..default() },
     ));
     let sky = (Vec3::Y * landscape.height_m(0.0, 0.0), 40_000.0);
-    options.light.daylight().spawn(&mut commands, &mut meshes, &mut materials, sky, (55.0, 420.0));
+    let daylight = options.light.daylight();
+    let sun = daylight.spawn(&mut commands, &mut meshes, &mut materials, sky, (55.0, 420.0));
+    if options.light == Light::Morning {
+        let size_m = Vec3::new(MIST_M, 0.5 * MIST_M, MIST_M);
+        mist::lay(&mut commands, sun, daylight.haze_colour(), scene.camera_transform().translation, size_m);
+    }
 }

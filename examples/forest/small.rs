@@ -3,7 +3,6 @@
 use crate::support::landscape::Landscape;
 use bevy::{math::DVec2, prelude::*};
 use bevy_windwood::{
-    forest::ForestGround,
     prelude::*,
     scatter::{
         ForestPlan,
@@ -12,6 +11,7 @@ use bevy_windwood::{
     },
     terrain::Cover,
 };
+use noise::{NoiseFn, OpenSimplex};
 
 /// Ground per tree, m^2.
 const AREA_PER_TREE_M2: f32 = 62.0;
@@ -19,6 +19,11 @@ const AREA_PER_TREE_M2: f32 = 62.0;
 const GROUP_M: f32 = 45.0;
 /// Where the firs begin, of the way from the lower edge to the upper one: -1 to 1.
 const FIRS_FROM: f32 = 0.15;
+
+/// Distance between clumps of grass in the wood, m.
+const CLUMP_M: f64 = 2.6;
+/// Noise above which grass grows in the wood: half of the ground.
+const SHADE: f64 = 0.0;
 
 /// Half the side of the square that the trees cover, m.
 pub fn half_side_m(trees: u32) -> f32 {
@@ -40,7 +45,7 @@ pub fn spawn_trees(commands: &mut Commands, plans: &mut Assets<ForestPlan>, grou
         ..default()
     };
     let plan = plans.add(plan(*ground.uphill(), half_m, seed));
-    commands.spawn((Forest::new(plan), settings, ForestGround(ground.ground.clone())));
+    commands.spawn((Forest::new(plan), settings));
 }
 
 fn plan(uphill: Vec2, half_m: f32, seed: u64) -> ForestPlan {
@@ -68,7 +73,7 @@ fn area(name: &str, shape: Option<Shape>, stock: [Stock; 2]) -> Option<Area> {
 }
 
 fn stock(species: &str, share: f32, age_years: f32) -> Stock {
-    Stock { species: species.into(), share, age_years, age_spread_years: 0.25 * age_years, ..default() }
+    Stock { species: species.into(), share, age_years, age_spread_years: 0.12 * age_years, ..default() }
 }
 
 /// The part of the square that lies on one side of a line, at least so far from the middle along `direction`: Sutherland & Hodgman 1974.
@@ -86,6 +91,16 @@ fn part(half_m: f32, direction: Vec2, from_m: f32) -> Option<Shape> {
         }
     }
     (corners_m.len() > 2).then_some(Shape::Polygon { corners_m })
+}
+
+/// The height of the ground where grass grows, m: everywhere outside the wood, and in clumps within.
+pub fn meadow(ground: &Landscape, trees: u32, seed: u64) -> impl Fn(DVec2) -> f64 + use<> {
+    let (ground, half_m, clumps) = (ground.clone(), f64::from(half_side_m(trees)), OpenSimplex::new(seed as u32));
+    move |at| {
+        let is_in_wood = trees > 0 && at.abs().max_element() < half_m;
+        let is_bare = is_in_wood && clumps.get((at / CLUMP_M).to_array()) < SHADE;
+        if is_bare { f64::NAN } else { f64::from(ground.height_m(at.x as f32, at.y as f32)) }
+    }
 }
 
 /// The floor of the wood, which is littered up to its edge.

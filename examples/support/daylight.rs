@@ -1,4 +1,4 @@
-//! Sky, sun and haze: of a clear afternoon, of dusk, of a storm.
+//! Sky, sun and haze: of a clear afternoon, of a morning, of dusk, of a storm.
 
 use super::sky::{self, SkyLight};
 use bevy::{
@@ -45,6 +45,24 @@ impl Daylight {
         },
     };
 
+    /// The sun two hands' breadths above the horizon.
+    pub const MORNING: Self = Self {
+        sun: Vec3::new(0.55, 0.36, 0.25),
+        sun_colour: [1.0, 0.80, 0.56],
+        sun_illuminance: 15_000.0,
+        zenith: Vec3::new(0.16, 0.32, 0.66),
+        horizon: Vec3::new(0.85, 0.84, 0.80),
+        glow: Vec3::new(1.8, 1.2, 0.6),
+        haze_colour: [0.80, 0.80, 0.80],
+        sight: 0.4,
+        light: SkyLight {
+            zenith: Vec3::new(0.58, 0.74, 1.02),
+            horizon: Vec3::new(0.60, 0.60, 0.58),
+            ground: Vec3::new(0.18, 0.18, 0.10),
+            brightness: 1100.0,
+        },
+    };
+
     /// The sun a hand's breadth above the horizon, as an eye sees it that has got used to it.
     pub const DUSK: Self = Self {
         sun: Vec3::new(0.55, 0.13, 0.25),
@@ -86,14 +104,14 @@ impl Daylight {
     pub fn haze(&self, distance_m: f32) -> DistanceFog {
         let [red, green, blue] = self.sun_colour;
         DistanceFog {
-            color: Color::srgb_from_array(self.haze_colour),
+            color: self.haze_colour(),
             directional_light_color: Color::srgba(red, green, blue, 0.25),
             directional_light_exponent: 12.0,
             falloff: FogFalloff::ExponentialSquared { density: 1.0 / (distance_m * self.sight) },
         }
     }
 
-    /// Spawns the sky's dome about a place, the sky's light, and the sun with its shadows.
+    /// Spawns the sky's dome about a place, the sky's light, and the sun with its shadows, which is returned.
     pub fn spawn(
         self,
         commands: &mut Commands,
@@ -101,10 +119,12 @@ impl Daylight {
         materials: &mut Assets<StandardMaterial>,
         (centre, radius_m): (Vec3, f32),
         (first_cascade_m, shadows_to_m): (f32, f32),
-    ) {
+    ) -> Entity {
         let dome = sky::dome(radius_m, [48, 24], |direction| self.sky_colour(direction));
         commands.spawn((sky::bundle(dome, meshes, materials), Transform::from_translation(centre)));
-        commands.spawn((
+        self.light.give_to_cameras(commands);
+        commands.insert_resource(bevy::light::DirectionalLightShadowMap { size: 2048 });
+        let sun = (
             DirectionalLight {
                 illuminance: self.sun_illuminance,
                 color: Color::srgb_from_array(self.sun_colour),
@@ -119,9 +139,13 @@ impl Daylight {
             }
             .build(),
             Transform::from_translation(self.sun).looking_at(Vec3::ZERO, Vec3::Y),
-        ));
-        self.light.give_to_cameras(commands);
-        commands.insert_resource(bevy::light::DirectionalLightShadowMap { size: 2048 });
+        );
+        commands.spawn(sun).id()
+    }
+
+    /// The colour of the haze.
+    pub fn haze_colour(&self) -> Color {
+        Color::srgb_from_array(self.haze_colour)
     }
 
     /// From the haze at the horizon to the zenith, and brighter about the sun.

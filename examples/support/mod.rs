@@ -10,6 +10,8 @@ pub mod daylight;
 pub mod dusk;
 pub mod effects;
 pub mod landscape;
+pub mod meadow;
+pub mod mist;
 pub mod options;
 pub mod pictures;
 pub mod scene;

@@ -5,6 +5,7 @@ use crate::{
     support::{
         daylight::Daylight,
         landscape::{FINEST_CELL_M, Landscape},
+        meadow,
         options::SceneOptions,
         scene::{Scene, no_plan_failed},
     },
@@ -17,7 +18,11 @@ use bevy_windwood::{
     scatter::{ForestPlan, Planter},
     terrain::Cover,
 };
+use noise::{NoiseFn, OpenSimplex};
 use std::sync::Arc;
+
+/// Distance between clumps of grass, m.
+const CLUMP_M: f64 = 3.5;
 
 const PLAN: &str = "forests/rockies.forest.ron";
 
@@ -91,8 +96,12 @@ fn spawn_scene(
     let forest = options.distances.settings(headless);
     // Pictures wait for the ground. A window must not.
     let (builds_at_once, chunks_per_frame) = if headless { (64, 64) } else { (8, 4) };
+    let cover = options.has_woods().then(|| cover(landscape)).flatten();
+    if options.view == View::Valley {
+        meadow::spawn_meadow(&mut commands, meadow_m(landscape, cover.clone()), cover.clone(), 1);
+    }
     commands.spawn((
-        Terrain { ground: landscape.ground.clone(), cover: options.has_woods().then(|| cover(landscape)).flatten() },
+        Terrain { ground: landscape.ground.clone(), cover },
         TerrainSettings {
             finest_cell_m: FINEST_CELL_M,
             reach_m: 40_000.0,
@@ -114,6 +123,17 @@ fn spawn_scene(
     let middle = 0.5 * (from + to);
     let sky = (Vec3::new(middle.x, 2500.0, middle.y), 60_000.0);
     Daylight::AFTERNOON.spawn(&mut commands, &mut meshes, &mut materials, sky, (60.0, 600.0));
+}
+
+/// The height of the ground where grass grows, m: not on steep ground, and less under trees.
+fn meadow_m(landscape: &Landscape, cover: Option<Arc<dyn Cover>>) -> impl Fn(DVec2) -> f64 + use<> {
+    let (landscape, clumps) = (landscape.clone(), OpenSimplex::new(1));
+    move |at| {
+        let shade = cover.as_ref().map_or(0.0, |cover| f64::from(cover.share(at)));
+        let lack = 2.2 * shade + 1.4 * landscape.ground.slope(at) - 0.9;
+        let is_bare = clumps.get((at / CLUMP_M).to_array()) < lack;
+        if is_bare { f64::NAN } else { f64::from(landscape.height_m(at.x as f32, at.y as f32)) }
+    }
 }
 
 /// The woods as a colour of the ground, for where no tree is drawn.

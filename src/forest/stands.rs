@@ -101,7 +101,7 @@ mod tests {
         },
         ground::LevelGround,
         scatter::{
-            ForestPlan,
+            ForestPlan, Planter,
             plan::{Area, Shape, Stock},
         },
         tree::{LeafSeason, growth::age::Age, phenology::Phenology},

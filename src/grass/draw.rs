@@ -109,8 +109,10 @@ fn show_patches(
             }
         };
         let patch = &making.meadow.patch;
+        // Where nothing grows there is no mesh: Bevy warns of those without vertices.
+        let mesh = if making.meadow.blades.is_empty() { Handle::default() } else { meshes.add(mesh) };
         // The box holds every pose; the mesh's own would be that of the roots.
-        entity.insert((Mesh3d(meshes.add(mesh)), bounds, NoAutoAabb, Shown(making.meadow.blades.clone())));
+        entity.insert((Mesh3d(mesh), bounds, NoAutoAabb, Shown(making.meadow.blades.clone())));
         if parent.is_some_and(|parent| fields_without_shadow.contains(parent.parent())) {
             entity.insert(NotShadowCaster);
         }

@@ -149,6 +149,7 @@ mod tests {
             droop_rad: 0.0,
             dryness: 0.0,
             rank: 0.0,
+            under_trees: 0.0,
         };
         // A uniform load that turns the tip by theta moves it by 3/4 theta l (q l^4 / 8 E I over q l^3 / 6 E I).
         let tip = blade.spine(Vec2::X * 0.01)[LINKS];
