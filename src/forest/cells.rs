@@ -11,7 +11,9 @@ use super::{
     stand::Stand,
 };
 #[cfg(feature = "render")]
-use crate::render::{impostors::near_mask::MaskRange, instances::components::HasImpostor};
+use super::tree_impostors::{ImpostorSize, TreeImpostors};
+#[cfg(feature = "render")]
+use crate::render::impostors::near_mask::MaskRange;
 use crate::{
     background::{Work, WorkerPanic, spawn_work, take_finished},
     cells::{Cell, CellSet, CellStore, CellStream, Orders, ViewerPose},
@@ -68,6 +70,9 @@ pub struct ForestCells {
     /// From where on impostors stand for its trees, m; none until they are drawn.
     #[cfg(feature = "render")]
     pub(super) impostors_from_m: Option<f32>,
+    /// How large the impostors of each species are; none of those that have none.
+    #[cfg(feature = "render")]
+    pub(super) impostor_sizes: Arc<[Option<ImpostorSize>]>,
     /// Whether it was told that a worker has panicked.
     has_told: bool,
     generation: u64,
@@ -129,6 +134,8 @@ impl ForestCells {
             for_impostors: None,
             #[cfg(feature = "render")]
             impostors_from_m: None,
+            #[cfg(feature = "render")]
+            impostor_sizes: Arc::default(),
             has_told: false,
             generation,
             tiles_since: generation,
@@ -346,8 +353,9 @@ impl ForestCells {
 #[cfg(feature = "render")]
 impl ForestCells {
     /// What tells its trees of their impostors; none where there are no impostors.
-    pub(super) fn impostor(&self) -> Option<HasImpostor> {
-        (self.settings.far_to_m > 0.0).then_some(HasImpostor { from_m: self.impostors_from_m })
+    pub(super) fn impostors(&self) -> Option<TreeImpostors> {
+        let from_m = self.impostors_from_m;
+        (self.settings.far_to_m > 0.0).then(|| TreeImpostors { from_m, sizes: self.impostor_sizes.clone() })
     }
 
     /// The distances of its impostors.

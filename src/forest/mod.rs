@@ -15,7 +15,7 @@
 //! - `stand` knows how high and dense the trees about a place are, and how open it is, for the wind among them; `stand_species` makes it
 //!   ready, `cell_canopies` works it out for a cell, `give_canopies` gives it to near trees.
 //! - `missing_species` tells which species of a plan cannot be loaded.
-//! - With the feature `render`, `impostors` draws the trees beyond, a tile of cells at a time.
+//! - With the feature `render`, `impostors` draws the trees beyond, a tile of cells at a time; `tree_impostors` tells near trees of theirs.
 //! - With it, too, `cull` hides near cells out of view, `layers` gives trees and impostors the render layers of their forest, and `diagnose`
 //!   tells how the forest does.
 //! - [`PlanCover`] tells the ground where the woods are, so that they are seen beyond the last tree.
@@ -59,6 +59,8 @@ mod stand_species;
 mod stem_id;
 mod stems;
 mod stream_trees;
+#[cfg(feature = "render")]
+mod tree_impostors;
 
 pub use cells::ForestCells;
 pub use changes::{ForestChanges, NewStem};
