@@ -1,6 +1,8 @@
 //! The cells of a forest: planted about the viewers in the background, a tile at a time. Stems go into the store, near trees and impostors
 //! take what they need of each tile when it comes.
 
+#[cfg(feature = "render")]
+use super::tree_impostors::ImpostorSize;
 use super::{
     cell_planter::CellPlanter,
     change_index::ChangeIndex,
@@ -67,6 +69,9 @@ pub struct ForestCells {
     /// From where on impostors stand for its trees, m; none until they are drawn.
     #[cfg(feature = "render")]
     pub(super) impostors_from_m: Option<f32>,
+    /// How large the impostors of each species are; none of those that have none.
+    #[cfg(feature = "render")]
+    pub(super) impostor_sizes: Arc<[Option<ImpostorSize>]>,
     /// Whether it was told that a worker has panicked.
     has_told: bool,
     generation: u64,
@@ -128,6 +133,8 @@ impl ForestCells {
             for_impostors: None,
             #[cfg(feature = "render")]
             impostors_from_m: None,
+            #[cfg(feature = "render")]
+            impostor_sizes: Arc::default(),
             has_told: false,
             generation,
             tiles_since: generation,

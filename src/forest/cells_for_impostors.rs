@@ -4,15 +4,17 @@ use super::{
     cells::{ForestCells, KnownTile},
     planted_tile::PlantedTile,
     reach::tile_stream,
+    tree_impostors::TreeImpostors,
 };
-use crate::render::{impostors::near_mask::MaskRange, instances::components::HasImpostor};
+use crate::render::impostors::near_mask::MaskRange;
 use bevy::math::IVec2;
 use std::sync::Arc;
 
 impl ForestCells {
     /// What tells its trees of their impostors; none where there are no impostors.
-    pub(super) fn impostor(&self) -> Option<HasImpostor> {
-        (self.settings.far_to_m > 0.0).then_some(HasImpostor { from_m: self.impostors_from_m })
+    pub(super) fn impostors(&self) -> Option<TreeImpostors> {
+        let from_m = self.impostors_from_m;
+        (self.settings.far_to_m > 0.0).then(|| TreeImpostors { from_m, sizes: self.impostor_sizes.clone() })
     }
 
     /// The distances of its impostors.

@@ -27,5 +27,5 @@ pub(super) fn copy_forest_layers(
 }
 
 fn parts(cells: &ForestCells, impostors: Option<&ForestImpostors>) -> impl Iterator<Item = Entity> {
-    cells.near.trees().chain(impostors.into_iter().flat_map(ForestImpostors::meshes))
+    cells.near.trees().map(|tree| tree.entity).chain(impostors.into_iter().flat_map(ForestImpostors::meshes))
 }

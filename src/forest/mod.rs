@@ -16,7 +16,8 @@
 //!   (`share_stands`), and how open a place is to each side, for the wind and the light there; `cell_canopies` works that out for a cell,
 //!   `give_canopies` gives it to near trees.
 //! - `missing_species` tells which species of a plan cannot be loaded.
-//! - With the feature `render`, `impostors` draws the trees beyond, a tile of cells at a time, which `cells_for_impostors` gives it.
+//! - With the feature `render`, `impostors` draws the trees beyond, a tile of cells at a time, which `cells_for_impostors` gives it;
+//!   `tree_impostors` tells near trees of theirs.
 //! - With it, too, `cull` hides near cells out of view, `layers` gives trees and impostors the render layers of their forest, and `diagnose`
 //!   tells how the forest does.
 //! - [`PlanCover`] tells the ground where the woods are, so that they are seen beyond the last tree.
@@ -64,6 +65,8 @@ mod stands;
 mod stem_id;
 mod stems;
 mod stream_trees;
+#[cfg(feature = "render")]
+mod tree_impostors;
 
 pub use cells::ForestCells;
 pub use changes::{ForestChanges, NewStem};

@@ -182,8 +182,8 @@ impl NearTrees {
 
     /// Every tree that is spawned.
     #[cfg(feature = "render")]
-    pub fn trees(&self) -> impl Iterator<Item = Entity> {
-        self.cells.values().flat_map(NearCell::trees).map(|tree| tree.entity)
+    pub fn trees(&self) -> impl Iterator<Item = &NearTree> {
+        self.cells.values().flat_map(NearCell::trees)
     }
 
     /// Grows whenever a cell comes or goes.
@@ -311,7 +311,7 @@ impl NearTrees {
         &mut self,
         trees_per_frame: u32,
         species: &[Handle<Species>],
-        mark: impl Fn(&mut EntityCommands),
+        mark: impl Fn(&mut EntityCommands, &Planted),
         commands: &mut Commands,
     ) {
         let mut left = trees_per_frame as usize;
@@ -321,7 +321,7 @@ impl NearTrees {
             for (id, plant) in cell.planted.drain(rest..) {
                 let handle = &species[usize::from(plant.species)];
                 let mut tree = commands.spawn((tree(&plant, handle.clone()), id, ChildOf(cell.entity)));
-                mark(&mut tree);
+                mark(&mut tree, &plant);
                 let spawned = NearTree { id, plant, species: handle.id(), entity: tree.id(), canopy_of: 0 };
                 self.events.push(NearEvent::Entered(spawned.clone()));
                 cell.spawned.push(spawned);

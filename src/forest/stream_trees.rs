@@ -4,7 +4,7 @@ use super::{
     cells::ForestCells,
     messages::{TreeEntered, TreeLeft},
 };
-use crate::{cells::ViewerPose, viewpoint::Viewpoints};
+use crate::{cells::ViewerPose, scatter::Planted, viewpoint::Viewpoints};
 use bevy::{ecs::system::SystemParam, prelude::*};
 
 /// Which trees are drawn. Where nothing draws, all count as drawn.
@@ -52,19 +52,19 @@ pub(super) fn stream_trees(
     viewpoints.fill(&mut places);
     for (entity, mut forest, layers) in &mut forests {
         #[cfg(feature = "render")]
-        let impostor = forest.impostor();
-        let give = |tree: &mut EntityCommands| {
+        let impostors = forest.impostors();
+        let give = |tree: &mut EntityCommands, plant: &Planted| {
             #[cfg(feature = "render")]
             {
-                if let Some(impostor) = impostor {
-                    tree.insert(impostor);
+                if let Some(impostors) = &impostors {
+                    tree.insert(impostors.of(plant));
                 }
                 if let Some(layers) = layers {
                     tree.insert(layers.clone());
                 }
             }
             #[cfg(not(feature = "render"))]
-            let ((), _) = (layers, tree);
+            let ((), ..) = (layers, tree, plant);
         };
         let (near, species, settings, plant) = forest.parts();
         near.receive(entity, species, &mut commands);

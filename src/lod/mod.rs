@@ -6,6 +6,7 @@
 //! | module | what |
 //! |---|---|
 //! | `decimate` | The tree's own meshes without thin branches, and with fewer but larger sprays of leaves. |
+//! | `coarse_sway` | Which beams move the coarsest of them, and what these carry. |
 //! | `thinned` | The levels made of such meshes, by what each species bears to lose. |
 //! | `impostor` | An atlas of views from all over the upper hemisphere, and how far such pictures lean in the wind. |
 //! | `paper` | The paper's medium level (a cone for the trunk, a textured envelope of leaves) and its low one (four polygons). |
@@ -14,6 +15,7 @@
 //! | `settings` | What can be chosen about all of these. |
 
 mod bake;
+mod coarse_sway;
 mod decimate;
 mod impostor;
 mod paper;
@@ -26,6 +28,8 @@ mod thinned;
 mod tests;
 
 pub use bake::scene::Scene;
+#[cfg(feature = "render")]
+pub(crate) use coarse_sway::{bind_to_swaying, swaying_beams};
 pub use decimate::{DecimatedMeshes, decimate, prunable_radius_m};
 pub use impostor::{
     atlas::{ImpostorAtlas, ImpostorView},
@@ -40,6 +44,6 @@ pub use screen_size::{Lens, LodScreenSizes};
 #[cfg(all(test, feature = "render"))]
 pub(crate) use settings::LEAST_LEAF_SHARE;
 pub use settings::{Decimation, EnvelopeSettings, ImpostorSettings, LodBakeSettings, MOST_LEVELS};
-#[cfg(feature = "render")]
-pub(crate) use thinned::thinned;
 pub use thinned::{ThinnedMeshes, thinned_meshes};
+#[cfg(feature = "render")]
+pub(crate) use thinned::{is_coarse, thinned};

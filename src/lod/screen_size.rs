@@ -26,9 +26,9 @@ pub struct LodScreenSizes {
 
 impl Default for LodScreenSizes {
     /// Full trees from two thirds of a picture of 1080 pixels on; of 25 m in a view of 45° that is at 47 m, and the medium
-    /// level ends at 330 m.
+    /// level ends at 255 m: where a tree is no larger than a view of its impostor.
     fn default() -> Self {
-        Self { high_px: 700.0, medium_px: 100.0, quality: 1.0, margin: 0.08 }
+        Self { high_px: 700.0, medium_px: 128.0, quality: 1.0, margin: 0.08 }
     }
 }
 
@@ -109,7 +109,7 @@ mod tests {
     fn a_tree_has_its_size_on_screen_where_a_level_ends() {
         let [high_m, medium_m] = LodScreenSizes::default().distances_m(25.0, LENS);
         let pixels = |distance_m: f32| 25.0 / (2.0 * distance_m * (0.5 * LENS.fov_rad).tan()) * LENS.picture_px;
-        for (at_m, px) in [(high_m, 700.0), (medium_m, 100.0)] {
+        for (at_m, px) in [(high_m, 700.0), (medium_m, 128.0)] {
             assert!((pixels(at_m) / px - 1.0).abs() < 1e-4);
         }
         let twice = LodScreenSizes { quality: 2.0, ..Default::default() }.distances_m(25.0, LENS);

@@ -73,6 +73,7 @@ pub(crate) use mechanics::{Piece, tree_pieces};
 pub use model::TreeModel;
 pub use plugin::TreePlugin;
 pub use species::{Species, SpeciesError};
+pub(crate) use wood_mesh::coarse_wood;
 
 #[cfg(all(test, feature = "render"))]
 pub(crate) use bounds::MOST_ENLARGED;

@@ -57,6 +57,8 @@ pub(super) struct Tube {
     /// Whole turns of the bark around the branch.
     turns: f32,
     tile_m: f32,
+    /// Factor of all radii.
+    widening: f32,
 }
 
 impl Tube {
@@ -64,11 +66,20 @@ impl Tube {
     pub(super) fn new(base_radius_m: f32, tile_m: f32) -> Self {
         let around_m = std::f32::consts::TAU * base_radius_m;
         let turns = (around_m / tile_m).round().max(1.0);
-        Self { rings: Vec::new(), sides: sides(base_radius_m), turns, tile_m: tile_m.min(4.0 * around_m / turns) }
+        let tile_m = tile_m.min(4.0 * around_m / turns);
+        Self { rings: Vec::new(), sides: sides(base_radius_m), turns, tile_m, widening: 1.0 }
+    }
+
+    /// The same with fewer sides, and as wide to the eye: those of a tube that is so many times as thin.
+    pub(super) fn coarsened(self, thinner: f32, base_radius_m: f32) -> Self {
+        let few = sides(base_radius_m / thinner);
+        // The mean width of a convex shape is its circumference over pi (Cauchy).
+        let circumference = |sides: usize| sides as f32 * (std::f32::consts::PI / sides as f32).sin();
+        Self { sides: few, widening: circumference(self.sides) / circumference(few), ..self }
     }
 
     pub(super) fn push(&mut self, ring: Ring) {
-        self.rings.push(ring);
+        self.rings.push(Ring { radius_m: ring.radius_m * self.widening, ..ring });
     }
 
     /// Appends the tube; `green` is its brightness if it is green, and else 0, `light` the ambient light at a point.

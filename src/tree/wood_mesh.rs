@@ -34,18 +34,44 @@ const LONGEST_RING_STEP_M: f32 = 2.2;
 /// Builds the surface of all branches of a skeleton.
 #[must_use]
 pub fn wood(species: &Species, skeleton: &Skeleton) -> WoodVertices {
+    tubes(species, skeleton, WoodDetail::Full, |_| true)
+}
+
+/// The surface of some branches, by their first beams, with as few vertices as show where they are small: a fifth of those of the full one.
+#[must_use]
+pub(crate) fn coarse_wood(species: &Species, skeleton: &Skeleton, stays: impl Fn(usize) -> bool) -> WoodVertices {
+    tubes(species, skeleton, WoodDetail::Coarse, stays)
+}
+
+/// How closely branches are drawn.
+#[derive(Clone, Copy, PartialEq)]
+enum WoodDetail {
+    Full,
+    /// Without fillets, with rings as few as bends need, and with sides as few as tubes of a quarter of the radius have.
+    Coarse,
+}
+
+/// Coarse tubes have the sides of tubes so many times as thin, and rings so many times as far apart.
+const COARSE_THINNER: f32 = 4.0;
+const COARSE_STEPS: f32 = 2.0;
+
+fn tubes(species: &Species, skeleton: &Skeleton, detail: WoodDetail, stays: impl Fn(usize) -> bool) -> WoodVertices {
     let mut vertices = WoodVertices::default();
     let continuations = skeleton.continuations();
     let last_order = skeleton.beams.iter().map(|beam| beam.order).max().unwrap_or(0);
     let mut continues = vec![false; skeleton.beams.len()];
     continuations.iter().flatten().for_each(|&next| continues[next as usize] = true);
 
-    for first in (0..skeleton.beams.len()).filter(|&index| !continues[index]) {
+    for first in (0..skeleton.beams.len()).filter(|&index| !continues[index] && stays(index)) {
         let chain: Vec<usize> =
             std::iter::successors(Some(first), |&beam| continuations[beam].map(|next| next as usize)).collect();
-        let branch = BranchChain { skeleton, chain: &chain, continuations: &continuations };
+        let branch = BranchChain { skeleton, chain: &chain, continuations: &continuations, detail };
         let base_radius_m = skeleton.beams[first].base_radius_m;
-        let mut tube = Tube::new(base_radius_m, species.wood.bark.tile_m);
+        let tube = Tube::new(base_radius_m, species.wood.bark.tile_m);
+        let mut tube = match detail {
+            WoodDetail::Full => tube,
+            WoodDetail::Coarse => tube.coarsened(COARSE_THINNER, base_radius_m),
+        };
         branch.rings(&skeleton.trunk, |ring| tube.push(ring));
         let green = species.wood.green.of_order(skeleton.beams[first].order, last_order);
         tube.write(&mut vertices, green, |point| species.foliage.light(skeleton.envelope.depth(point)));
@@ -57,6 +83,7 @@ struct BranchChain<'a> {
     skeleton: &'a Skeleton,
     chain: &'a [usize],
     continuations: &'a [Option<u32>],
+    detail: WoodDetail,
 }
 
 impl BranchChain<'_> {
@@ -70,7 +97,10 @@ impl BranchChain<'_> {
         for (place, &index) in self.chain.iter().enumerate() {
             let beam = &self.skeleton.beams[index];
             let next = self.chain.get(place + 1).map(|&next| &self.skeleton.beams[next]);
-            let steps = steps(beam);
+            let steps = match self.detail {
+                WoodDetail::Full => steps(beam),
+                WoodDetail::Coarse => (steps(beam) as f32 / COARSE_STEPS).ceil() as usize,
+            };
             for step in 1..=steps {
                 let s = step as f32 / steps as f32;
                 let buried = place == 0 && s <= covered;
@@ -92,7 +122,11 @@ impl BranchChain<'_> {
         let beam = &self.skeleton.beams[index];
         let height_m = trunk.flare_height_m;
         let mut covered = 0.0;
-        for share in [-1.0, 0.0, 0.3, 0.7, 1.3, 2.2, 3.5] {
+        let shares: &[f32] = match self.detail {
+            WoodDetail::Full => &[-1.0, 0.0, 0.3, 0.7, 1.3, 2.2, 3.5],
+            WoodDetail::Coarse => &[-1.0, 0.0, 0.7, 2.2],
+        };
+        for &share in shares {
             let at_m = if share < 0.0 { -ROOT_DEPTH_M } else { share * height_m };
             let s = at_m / beam.length_m;
             if s > 0.9 {
@@ -121,7 +155,8 @@ impl BranchChain<'_> {
         let rise_m = FILLET_RISE * beam.base_radius_m;
         let surface_m = limb.exit_m(beam.base, root.tangent).max(0.0);
         let neck = (surface_m + rise_m) / beam.length_m;
-        let thin = beam.base_radius_m < FILLET_LEAST_RADIUS_M || spread_m <= 0.0;
+        let is_coarse = self.detail == WoodDetail::Coarse;
+        let thin = is_coarse || beam.base_radius_m < FILLET_LEAST_RADIUS_M || spread_m <= 0.0;
         if thin || slant < FILLET_LEAST_SLANT || neck > FILLET_LONGEST || beam.attach > 0.98 {
             root.radius_m = root.radius_m.min(0.95 * limb.radius_m);
             push(root);

@@ -11,11 +11,17 @@ use crate::{
 };
 use bevy::{
     diagnostic::{Diagnostic, DiagnosticsStore},
+    mesh::MeshTag,
     prelude::*,
-    render::diagnostic::RenderDiagnosticsPlugin,
+    render::{
+        RenderApp,
+        diagnostic::RenderDiagnosticsPlugin,
+        mesh::{RenderMesh, RenderMeshBufferInfo},
+        render_asset::RenderAssets,
+    },
     time::TimeUpdateStrategy,
 };
-use bevy_windwood::prelude::*;
+use bevy_windwood::{prelude::*, render::TreePart};
 use std::{
     collections::BTreeMap,
     path::Path,
@@ -75,6 +81,33 @@ struct Cost {
     frame_ms: f64,
     unshadowed_ms: f64,
     passes: Passes,
+    levels: Levels,
+}
+
+/// Meshes, vertices and triangles of trees that are entities and not hidden, in view or not: by level and part.
+type Levels = BTreeMap<(u32, &'static str), [u64; 3]>;
+
+fn levels(app: &mut App) -> Levels {
+    let world = app.world_mut();
+    let mut drawn = world.query::<(&MeshTag, &TreePart, &Mesh3d, &InheritedVisibility)>();
+    let mut meshes: Vec<(u32, TreePart, AssetId<Mesh>)> = Vec::new();
+    for (tag, part, mesh, _) in drawn.iter(world).filter(|(.., visibility)| visibility.get()) {
+        meshes.push((tag.value >> 16 & 3, *part, mesh.id()));
+    }
+    let there = app.sub_app(RenderApp).world().resource::<RenderAssets<RenderMesh>>();
+    let mut levels = Levels::new();
+    for (level, part, mesh) in meshes {
+        let Some(mesh) = there.get(mesh) else { continue };
+        let triangles = match &mesh.buffer_info {
+            RenderMeshBufferInfo::Indexed { count, .. } => count / 3,
+            RenderMeshBufferInfo::NonIndexed => mesh.vertex_count / 3,
+        };
+        let part = if part == TreePart::Wood { "wood" } else { "leaves" };
+        let sums = levels.entry((level, part)).or_default();
+        let counts = [1, u64::from(mesh.vertex_count), u64::from(triangles)];
+        sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
+    }
+    levels
 }
 
 fn measure(stand: &Stand, picture: &Path) -> Result<Cost, String> {
@@ -86,12 +119,12 @@ fn measure(stand: &Stand, picture: &Path) -> Result<Cost, String> {
     app.world_mut().entity_mut(camera).insert(capture::camera(&target));
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(1.0 / 60.0)));
     let frame_ms = frames_ms(&mut app);
-    let passes = passes(&mut app);
+    let (passes, levels) = (passes(&mut app), levels(&mut app));
     capture::save(&capture::capture(&mut app, &target, SIZE)?, picture)?;
     let world = app.world_mut();
     world.query::<&mut DirectionalLight>().iter_mut(world).for_each(|mut sun| sun.shadow_maps_enabled = false);
     let unshadowed_ms = frames_ms(&mut app);
-    Ok(Cost { frame_ms, unshadowed_ms, passes })
+    Ok(Cost { frame_ms, unshadowed_ms, passes, levels })
 }
 
 /// One tree that fills the picture. Returns a [`Viewpoint`] that becomes the camera.
@@ -149,6 +182,9 @@ fn record(report: &mut Report, name: &str, cost: &Cost, keys: [&'static str; 4])
             show("fragment_shader_invocations"),
             fragments.map_or_else(String::new, |fragments| format!("{:.2}", fragments / pixels)),
         );
+    }
+    for ((level, part), [meshes, vertices, triangles]) in &cost.levels {
+        println!("    level {level}, {part}: {meshes} meshes, {vertices} vertices, {triangles} triangles");
     }
     let sum = |quantity: &str| names.iter().filter_map(|pass| value(pass, quantity)).sum::<f64>();
     report.record(keys[0], sum("fragment_shader_invocations"), "fragments shaded in all passes but shadows");

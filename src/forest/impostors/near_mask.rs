@@ -1,12 +1,9 @@
 //! Tells trees from where on impostors stand for them, and the shader of impostors which cells' trees are drawn as entities.
 
-use super::tiles::ForestImpostors;
+use super::{species::ImpostorSpeciesLibrary, tiles::ForestImpostors};
 use crate::{
     forest::cells::ForestCells,
-    render::{
-        buffers::table_uploads::TableUploads, impostors::near_mask::NearMasks, instances::components::HasImpostor,
-        lod::viewers::LodViewers,
-    },
+    render::{buffers::table_uploads::TableUploads, impostors::near_mask::NearMasks, lod::viewers::LodViewers},
 };
 use bevy::prelude::*;
 
@@ -17,6 +14,7 @@ const TREES_END_AT: f32 = 0.88;
 /// Writes where that has changed: forest by forest, since each has cells and distances of its own.
 pub(super) fn update_near_masks(
     mut commands: Commands,
+    library: Res<ImpostorSpeciesLibrary>,
     mut masks: ResMut<NearMasks>,
     mut uploads: TableUploads,
     mut viewers: ResMut<LodViewers>,
@@ -30,11 +28,16 @@ pub(super) fn update_near_masks(
             Some(_) => forest.impostors_from_m,
             None => None,
         };
-        if forest.impostors_from_m != from_m {
+        let sizes = || forest.species().iter().map(|species| library.size_of(species.id()));
+        if forest.impostors_from_m != from_m || !sizes().eq(forest.impostor_sizes.iter().copied()) {
+            let sizes = sizes().collect();
+            forest.impostor_sizes = sizes;
             forest.impostors_from_m = from_m;
             viewers.is_due = true;
-            for tree in forest.near.trees() {
-                commands.entity(tree).try_insert(HasImpostor { from_m });
+            if let Some(impostors) = forest.impostors() {
+                for tree in forest.near.trees() {
+                    commands.entity(tree.entity).try_insert(impostors.of(&tree.plant));
+                }
             }
         }
         if let Some(tiles) = &mut tiles {

@@ -2,7 +2,7 @@
 
 use crate::{
     background::{Work, spawn_work},
-    forest::cells::ForestCells,
+    forest::{cells::ForestCells, tree_impostors::ImpostorSize},
     lod::{ImpostorAtlas, ImpostorSettings, ImpostorSway, Scene},
     render::{
         RenderCapabilities, SwayBuffers,
@@ -43,6 +43,8 @@ pub(super) struct ImpostorSpecies {
     pub age: Age,
     /// How far the mature tree reaches from its foot, m.
     pub reach_m: f32,
+    /// Height of the mature tree's impostor, m.
+    pub height_m: f32,
     /// How many variants the species has, and how many the atlas shows: the first ones.
     pub variants: u32,
     pub shown_variants: u32,
@@ -56,6 +58,11 @@ struct Baked {
 impl ImpostorSpeciesLibrary {
     pub fn get(&self, id: AssetId<Species>) -> Option<&ImpostorSpecies> {
         self.species.get(&id)
+    }
+
+    /// How large its impostors are, where it has any.
+    pub fn size_of(&self, id: AssetId<Species>) -> Option<ImpostorSize> {
+        self.get(id).map(|species| ImpostorSize { age: species.age, mature_m: species.height_m })
     }
 
     /// Whether its atlas is baked, or cannot be, or the species cannot be loaded.
@@ -174,8 +181,10 @@ pub(super) fn bake_impostor_species(
             }
             None => materials.add(material),
         };
+        // As the shader takes it: `height_m` of `impostor_vertex.wesl`.
+        let height_m = frame.centre.y + frame.half_height_m;
         let (age, variants) = (species.age, species.variants);
-        baked.insert(*id, ImpostorSpecies { material: handle, age, reach_m, variants, shown_variants });
+        baked.insert(*id, ImpostorSpecies { material: handle, age, reach_m, height_m, variants, shown_variants });
         false
     });
 }

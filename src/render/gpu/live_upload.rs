@@ -17,7 +17,8 @@ const MOST_ROWS: u32 = 1 << 21;
 const MOST_TREES: u32 = 1 << 16;
 const ROW_BYTES: u64 = 16;
 
-/// The rows of trees that are awake: one a beam, with its free angle, and two with the wind of sources at the tree's top and lower down.
+/// The rows of trees that are awake: two with the wind of sources at the tree's top and lower
+/// down, and one a beam, with its free angle.
 /// There is a half for this frame and one for the last, which change places each frame.
 #[derive(Resource)]
 pub(crate) struct LiveUploads {
@@ -77,7 +78,7 @@ impl LiveUploads {
 
     fn write(&mut self, first: u32, angles: impl Iterator<Item = Vec3A>, wind: WindAtTree) {
         let winds = [wind.high, wind.low].map(Vec3A::from);
-        let values = angles.chain(winds).map(|value| value.extend(0.0).to_array());
+        let values = winds.into_iter().chain(angles).map(|value| value.extend(0.0).to_array());
         self.rows[first as usize..].iter_mut().zip(values).for_each(|(row, value)| *row = value);
     }
 }

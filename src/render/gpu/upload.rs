@@ -20,7 +20,7 @@ use crate::{
             rows::{FrameRow, POSE_BYTES},
             tables::InstanceTables,
         },
-        lod::{thresholds::HEIGHT_TOLERANCE, viewers::LodViewers},
+        lod::{thresholds::FADE_LAG, viewers::LodViewers},
     },
     sway::{ActiveSway, Pushers, WindResponse, leaf_clock_s, wrapped_time_s},
     tree::Season,
@@ -237,7 +237,7 @@ fn frame_row(
         year: season.wrapped(),
         lod_ends: viewers.thresholds.ends,
         fade: viewers.thresholds.fade,
-        height_tolerance: HEIGHT_TOLERANCE,
+        fade_lag: FADE_LAG,
         viewer_count: 0,
         shadow_end: viewers.thresholds.shadow_end,
         ..FrameRow::default()

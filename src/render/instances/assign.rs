@@ -88,9 +88,10 @@ impl Assigner<'_, '_> {
         let model = grown.model.id();
         let Some(variant) = self.library.variant(tree.species.id(), model) else { return false };
         let (lod_count, height_m) = (variant.lods.len() as u8, variant.height_m);
+        let coarse_beams = variant.coarse_beams;
         let row = if self.capabilities.sways { self.allocate_row(model) } else { None };
         let tint = tree.tint_byte(grown.seed) as u8;
-        self.commands.entity(entity).insert(TreeInstance { model, row, lod_count, height_m, tint });
+        self.commands.entity(entity).insert(TreeInstance { model, row, lod_count, coarse_beams, height_m, tint });
         true
     }
 

@@ -13,6 +13,8 @@ pub(crate) struct TreeInstance {
     pub row: Option<u32>,
     /// How many LOD levels it has.
     pub lod_count: u8,
+    /// Beams that have to be posed where its coarsest level alone is drawn: the first ones.
+    pub coarse_beams: u32,
     /// Its height while its scale is 1, m.
     pub height_m: f32,
     pub tint: u8,
@@ -24,4 +26,6 @@ pub(crate) struct TreeInstance {
 pub(crate) struct HasImpostor {
     /// The impostor does not stand nearer than this, m; none until it is drawn.
     pub from_m: Option<f32>,
+    /// Its height while the tree's scale is 1, m. Models are grown for ages in steps, impostors for any age: it may differ from the tree's.
+    pub height_m: f32,
 }

@@ -74,8 +74,8 @@ pub(crate) struct FrameRow {
     pub lod_ends: [f32; 3],
     /// Levels fade over this share of a distance, to either side.
     pub fade: f32,
-    /// Heights of a tree and its impostor differ by less than this factor.
-    pub height_tolerance: f32,
+    /// Trees fade so much later than their impostors come, as a factor of the distance.
+    pub fade_lag: f32,
     /// Of `viewers`, those that are set.
     pub viewer_count: u32,
     /// From here on impostors cast the shadows of trees in a sun's maps, per metre of their height.
@@ -121,8 +121,8 @@ pub(crate) struct TreeRow {
     pub first_pose: u32,
     /// See [`TreeRow::season_and_height`].
     pub season_and_height: u32,
-    /// No impostor stands for the tree nearer than this, m; [`NO_IMPOSTOR_M`] where none stands for it at all.
-    pub impostor_from_m: f32,
+    /// See [`TreeRow::impostor`].
+    pub impostor: u32,
     /// A [`PackedCanopy`].
     pub canopy_profile: u32,
     pub canopy_exposure: u32,
@@ -136,13 +136,24 @@ pub(crate) const NO_IMPOSTOR_M: f32 = 1e30;
 impl TreeRow {
     /// In the open, without poses.
     pub fn new(first_beam: u32) -> Self {
-        let mut row = Self { first_beam, ..Self::default() };
+        let mut row = Self { first_beam, impostor: Self::NO_IMPOSTOR, ..Self::default() };
         row.set_canopy(Canopy::OPEN);
         row
     }
 
     pub fn set_canopy(&mut self, PackedCanopy { profile, exposure }: PackedCanopy) {
         (self.canopy_profile, self.canopy_exposure) = (profile, exposure);
+    }
+
+    /// Where no impostor stands for a tree.
+    pub const NO_IMPOSTOR: u32 = u32::MAX;
+
+    /// From where on an impostor stands for it, m, in steps of half a metre, and the height of that, m, in steps of 4 mm. Both are rounded up:
+    /// a tree may fade late, but not early.
+    pub fn impostor(from_m: f32, height_m: f32) -> u32 {
+        let from = (from_m * 2.0).ceil().clamp(0.0, 65_534.0) as u32;
+        let height = (height_m * 256.0).ceil().clamp(0.0, 65_535.0) as u32;
+        from | height << 16
     }
 
     /// How far it is ahead of the season, -0.5 to 0.5 years in steps of 8 minutes, and its height, m, to 256 m in steps of

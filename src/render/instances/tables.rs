@@ -5,7 +5,7 @@
 //! stands.
 
 use super::{
-    rows::{BeamRow, NO_IMPOSTOR_M, POSE_BYTES, TreeRow},
+    rows::{BeamRow, POSE_BYTES, TreeRow},
     tag::MAX_ROWS,
     workgroups::PoseWorkgroups,
 };
@@ -42,21 +42,21 @@ pub(crate) struct InstanceTables {
 struct RowState {
     /// Of its tree, whether it is posed or not.
     beams: u32,
-    is_visible: bool,
+    /// Beams that are to be posed, the first ones: none while it is hidden.
+    wanted: Option<u32>,
     posed: Option<PoseRange>,
 }
 
 #[derive(Clone)]
 struct PoseRange {
+    beams: u32,
     poses: Allocation,
     first_workgroup: u32,
 }
 
-impl RowState {
-    /// Poses that its tree needs: one more than beams, for the wind at the tree.
-    fn poses(&self) -> u32 {
-        self.beams + 1
-    }
+/// Poses that beams of a tree need: one more, for the wind at the tree.
+fn poses_of(beams: u32) -> u32 {
+    beams + 1
 }
 
 struct ModelBeams {
@@ -146,10 +146,11 @@ impl InstanceTables {
         }
     }
 
-    /// Writes from where on an impostor stands for a tree, m.
-    pub fn write_impostor(&mut self, row: u32, from_m: Option<f32>) {
+    /// Writes from where on an impostor stands for a tree, m, and its height while the tree's scale is 1, m.
+    pub fn write_impostor(&mut self, row: u32, at: &GlobalTransform, impostor: Option<(f32, f32)>) {
         if let Some(tree) = self.trees.get_mut(row) {
-            tree.impostor_from_m = from_m.unwrap_or(NO_IMPOSTOR_M);
+            let packed = |(from_m, height_m)| TreeRow::impostor(from_m, height_m * uniform_scale(at).abs());
+            tree.impostor = impostor.map_or(TreeRow::NO_IMPOSTOR, packed);
         }
     }
 
@@ -165,38 +166,36 @@ impl InstanceTables {
         }
     }
 
-    /// Poses a tree from now on, as long as there are poses, or no longer.
-    pub fn set_visible(&mut self, row: u32, is_visible: bool) {
+    /// Poses so many beams of a tree from now on, the first ones, as long as there are poses; or none any more.
+    pub fn set_posed(&mut self, row: u32, beams: Option<u32>) {
         let Some(state) = self.rows.get_mut(row as usize) else { return };
-        state.is_visible = is_visible;
-        if is_visible {
-            self.allocate_poses(row);
-        } else {
+        state.wanted = beams.map(|beams| beams.min(state.beams));
+        let posed = state.posed.as_ref().map(|posed| posed.beams);
+        if posed != state.wanted {
             self.free_poses(row);
+            self.allocate_poses(row);
         }
     }
 
     fn allocate_poses(&mut self, row: u32) {
         let state = &mut self.rows[row as usize];
-        if state.posed.is_some() {
-            return;
-        }
-        let Some(poses) = self.pose_ranges.allocate(state.poses()) else {
+        let Some(beams) = state.wanted.filter(|_| state.posed.is_none()) else { return };
+        let Some(poses) = self.pose_ranges.allocate(poses_of(beams)) else {
             self.lacks_poses = true;
             return;
         };
-        state.posed = Some(PoseRange { poses, first_workgroup: self.workgroups.add(row, state.poses()) });
-        self.pose_end = self.pose_end.max(poses.offset + state.poses());
+        let first_workgroup = self.workgroups.add(row, poses_of(beams));
+        state.posed = Some(PoseRange { beams, poses, first_workgroup });
+        self.pose_end = self.pose_end.max(poses.offset + poses_of(beams));
         if let Some(tree) = self.trees.get_mut(row) {
-            (tree.first_pose, tree.beam_count) = (poses.offset, state.beams);
+            (tree.first_pose, tree.beam_count) = (poses.offset, beams);
         }
     }
 
     fn free_poses(&mut self, row: u32) {
-        let state = &mut self.rows[row as usize];
-        let Some(PoseRange { poses, first_workgroup }) = state.posed.take() else { return };
+        let Some(PoseRange { beams, poses, first_workgroup }) = self.rows[row as usize].posed.take() else { return };
         self.pose_ranges.free(poses);
-        self.workgroups.remove(first_workgroup, state.poses());
+        self.workgroups.remove(first_workgroup, poses_of(beams));
         self.freed_poses = true;
         if let Some(tree) = self.trees.get_mut(row) {
             tree.beam_count = 0;
@@ -217,11 +216,7 @@ impl InstanceTables {
     pub fn retry_unposed(&mut self) -> bool {
         if self.lacks_poses && self.freed_poses {
             self.lacks_poses = false;
-            for row in 0..self.trees.len() {
-                if self.rows[row as usize].is_visible {
-                    self.allocate_poses(row);
-                }
-            }
+            (0..self.trees.len()).for_each(|row| self.allocate_poses(row));
         }
         self.freed_poses = false;
         self.lacks_poses
@@ -279,7 +274,7 @@ mod tests {
         let mut poses = 0;
         for round in 0..10 {
             let rows: Vec<u32> = (0..100).filter_map(|_| tables.allocate_row(id)).collect();
-            rows.iter().for_each(|row| tables.set_visible(*row, true));
+            rows.iter().for_each(|row| tables.set_posed(*row, Some(BEAMS)));
             assert_eq!((rows.len(), posed(&tables)), (100, 100));
             if round == 0 {
                 poses = tables.pose_count();
@@ -295,10 +290,10 @@ mod tests {
         let (mut tables, id) = tables(5 * (BEAMS + 1));
         let rows: Vec<u32> = (0..8).filter_map(|_| tables.allocate_row(id)).collect();
         assert_eq!(posed(&tables), 0);
-        rows.iter().for_each(|row| tables.set_visible(*row, true));
+        rows.iter().for_each(|row| tables.set_posed(*row, Some(BEAMS)));
         assert!(tables.retry_unposed());
         assert_eq!(posed(&tables), 5);
-        rows[..2].iter().for_each(|row| tables.set_visible(*row, false));
+        rows[..2].iter().for_each(|row| tables.set_posed(*row, None));
         assert!(tables.retry_unposed());
         assert_eq!(posed(&tables), 5);
         tables.free_row(rows[2]);
@@ -316,7 +311,8 @@ mod tests {
             (0..300).filter_map(|tree| tables.allocate_row(if tree % 3 == 0 { other } else { id })).collect();
         for round in 0..7 {
             for (number, row) in rows.iter().enumerate() {
-                tables.set_visible(*row, (number + round) % 4 != 0);
+                let beams = [None, Some(u32::MAX), Some(3), Some(BEAMS)][(number + round) % 4];
+                tables.set_posed(*row, beams);
             }
         }
         let mut taken: Vec<(u32, u32)> = tables

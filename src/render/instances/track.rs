@@ -38,7 +38,8 @@ pub(crate) fn write_tree_rows(
     for (entity, instance, tree, at, impostor, canopy) in &trees {
         let Some(row) = instance.row else { continue };
         tables.write_transform(row, at, tree.season_shift(), instance.height_m);
-        tables.write_impostor(row, impostor.and_then(|impostor| impostor.from_m));
+        let impostor = impostor.and_then(|impostor| Some((impostor.from_m?, impostor.height_m)));
+        tables.write_impostor(row, at, impostor);
         tables.write_canopy(row, &canopy.copied().unwrap_or_default().0);
         if !*has_warned && !is_uniform(at.scale()) {
             warn!(
@@ -57,7 +58,7 @@ fn is_uniform(scale: Vec3) -> bool {
 }
 
 /// Poses trees that become visible, and no longer those that are hidden: by the game, by a cell that nobody sees, or because their
-/// impostor stands for them.
+/// impostor stands for them. Of trees that are drawn at their coarsest level alone no more is posed than what moves that.
 pub(crate) fn update_posed_trees(
     mut tables: ResMut<InstanceTables>,
     capabilities: Res<RenderCapabilities>,
@@ -70,7 +71,9 @@ pub(crate) fn update_posed_trees(
     let tables = tables.bypass_change_detection();
     for (instance, visibility, selection) in &trees {
         if let Some(row) = instance.row {
-            tables.set_visible(row, visibility.get() && !selection.is_impostor);
+            let is_coarsest = !selection.is_fading && selection.lod > 0 && selection.lod + 1 == instance.lod_count;
+            let beams = if is_coarsest { instance.coarse_beams } else { u32::MAX };
+            tables.set_posed(row, (visibility.get() && !selection.is_impostor).then_some(beams));
         }
     }
     if tables.retry_unposed() && !*has_warned {

@@ -72,10 +72,11 @@ pub(super) fn select_at(
     impostor: Option<&HasImpostor>,
     before: Option<LodSelection>,
 ) -> LodSelection {
-    let (height_m, count) = (instance.height_m * at.affine().matrix3.y_axis.length(), instance.lod_count);
-    match (instance.row, impostor.and_then(|impostor| impostor.from_m)) {
+    let scale = at.affine().matrix3.y_axis.length();
+    let (height_m, count) = (instance.height_m * scale, instance.lod_count);
+    match (instance.row, impostor.and_then(|impostor| Some((impostor.from_m?, impostor.height_m * scale)))) {
         (None, _) => thresholds.select_without_fade(distance.scaled_m, height_m, count, before),
-        (Some(_), Some(from_m)) => thresholds.select_before_impostor(distance, height_m, count, from_m, before),
+        (Some(_), Some(impostor)) => thresholds.select_before_impostor(distance, height_m, count, impostor, before),
         (Some(_), None) => thresholds.select(distance.scaled_m, height_m, count, before),
     }
 }

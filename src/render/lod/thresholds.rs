@@ -17,8 +17,9 @@ const NEVER_M: f32 = 1e30;
 /// the distance, and no less than a fast viewer makes between two selections.
 const SLACK_M: [f32; 2] = [1.0, 3.0];
 const SLACK_SHARE: f32 = 0.05;
-/// Models are grown for ages in steps, impostors for any age: the heights of a tree and its impostor differ by less than this factor.
-pub(crate) const HEIGHT_TOLERANCE: f32 = 1.17;
+/// A tree fades so much later than its impostor comes, as a factor of the distance: the heights that both go by are rounded, and no pixel may
+/// be left to neither.
+pub(crate) const FADE_LAG: f32 = 1.01;
 
 /// Which LOD levels of a tree are drawn.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -93,22 +94,23 @@ impl LodThresholds {
         LodSelection { lod: last, ..default() }
     }
 
-    /// The same for a tree with an impostor, which stands no nearer than `impostor_from_m`.
+    /// The same for a tree with an impostor of a height, m, which stands no nearer than `from_m`.
     pub fn select_before_impostor(
         &self,
         distance: LodDistance,
         height_m: f32,
         count: u8,
-        impostor_from_m: f32,
+        (from_m, impostor_height_m): (f32, f32),
         before: Option<LodSelection>,
     ) -> LodSelection {
         let selection = self.select(distance.scaled_m, height_m, count, before);
         let margin = if before.is_some_and(|before| before.is_impostor) { -self.margin } else { 0.0 };
         let is_beyond =
             |distance_m: f32, end_m: f32| distance_m > (end_m * (1.0 + self.fade) + slack_m(end_m)) * (1.0 + margin);
-        let is_impostor = is_beyond(distance.m, impostor_from_m)
-            || is_beyond(distance.scaled_m, self.ends[MOST_LEVELS - 1] * height_m * HEIGHT_TOLERANCE);
-        let is_shadow_impostor = is_beyond(distance.scaled_m, self.caster_end * height_m * HEIGHT_TOLERANCE);
+        let lagging_m = impostor_height_m * FADE_LAG;
+        let is_impostor = is_beyond(distance.m, from_m * FADE_LAG)
+            || is_beyond(distance.scaled_m, self.ends[MOST_LEVELS - 1] * lagging_m);
+        let is_shadow_impostor = is_beyond(distance.scaled_m, self.caster_end * lagging_m);
         LodSelection { is_impostor, is_shadow_impostor, ..selection }
     }
 
@@ -193,7 +195,7 @@ mod tests {
         let thresholds = thresholds();
         let is_impostor = |m, before| {
             let distance = LodDistance { m, scaled_m: m };
-            thresholds.select_before_impostor(distance, 20.0, 3, IMPOSTOR_FROM_M, before).is_impostor
+            thresholds.select_before_impostor(distance, 20.0, 3, (IMPOSTOR_FROM_M, 20.0), before).is_impostor
         };
         // Impostors begin at 200 m, and are complete there.
         assert!(!is_impostor(200.0 * (1.0 + thresholds.fade), None) && is_impostor(230.0, None));
@@ -206,10 +208,10 @@ mod tests {
     fn trees_cast_no_shadow_themselves_where_their_impostor_does_but_for_lamps() {
         let at = |thresholds: LodThresholds, heights: f32| {
             let distance = LodDistance { m: 20.0 * heights, scaled_m: 20.0 * heights };
-            thresholds.select_before_impostor(distance, 20.0, 3, IMPOSTOR_FROM_M, None).is_shadow_impostor
+            thresholds.select_before_impostor(distance, 20.0, 3, (IMPOSTOR_FROM_M, 20.0), None).is_shadow_impostor
         };
         let thresholds = thresholds();
-        let hidden_from = thresholds.shadow_end * HEIGHT_TOLERANCE * (1.0 + thresholds.fade);
+        let hidden_from = thresholds.shadow_end * FADE_LAG * (1.0 + thresholds.fade);
         assert!(!at(thresholds, hidden_from) && at(thresholds, hidden_from + 0.3));
         assert!(!at(thresholds.with_lamps(), 9.0), "a lamp's map would lack it");
         assert!(!thresholds.select(180.0, 20.0, 3, None).is_shadow_impostor, "it has no impostor");
@@ -218,7 +220,8 @@ mod tests {
     #[test]
     fn a_lens_moves_levels_but_not_the_border_of_the_entities() {
         let select = |m, scaled_m| {
-            thresholds().select_before_impostor(LodDistance { m, scaled_m }, 20.0, 3, IMPOSTOR_FROM_M, None)
+            let distance = LodDistance { m, scaled_m };
+            thresholds().select_before_impostor(distance, 20.0, 3, (IMPOSTOR_FROM_M, 20.0), None)
         };
         let telephoto = select(150.0, 15.0);
         assert_eq!(telephoto, LodSelection::default());

@@ -37,6 +37,8 @@ pub(crate) struct PreparedVariant {
     /// Box around all its poses in the winds that blow, tree-local, m.
     pub bounds: Aabb,
     pub height_m: f32,
+    /// Beams that move its coarsest level: the first ones.
+    pub coarse_beams: u32,
     /// How its meshes are made again.
     pub recipe: Arc<LevelRecipe>,
     /// Meshes that stay on the GPU: those of the coarsest level, which stand for all others until these are there.

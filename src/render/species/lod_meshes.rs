@@ -7,8 +7,8 @@ use super::{
 };
 use crate::{
     lod::{
-        CrossedPolygons, EnvelopeLevel, EnvelopeVertices, LodBakeSettings, Scene, ThinnedMeshes, crossed_polygons,
-        thinned,
+        CrossedPolygons, EnvelopeLevel, EnvelopeVertices, LodBakeSettings, Scene, ThinnedMeshes, bind_to_swaying,
+        crossed_polygons, is_coarse, swaying_beams, thinned,
     },
     render::settings::LevelStyle,
     tree::{
@@ -45,6 +45,8 @@ pub(crate) struct VariantMeshes {
     /// From the finest to the coarsest: at least one.
     pub lods: Vec<LodMeshes>,
     pub height_m: f32,
+    /// Beams that move the coarsest level: the first ones.
+    pub coarse_beams: u32,
 }
 
 /// The meshes of one LOD level.
@@ -53,7 +55,7 @@ pub(crate) struct LodMeshes {
     /// What is drawn in its place while the tree has no leaves: more of its twigs.
     pub bare_wood: Option<MeshPart>,
     pub leaves: Option<MeshPart>,
-    /// Whether its wood is part of that of the level before. Then the latter alone is drawn while both levels are.
+    /// Whether its wood is of branches that the level before has, too. Then the latter alone is drawn while both levels are.
     pub is_wood_nested: bool,
 }
 
@@ -70,6 +72,8 @@ pub(crate) enum MaterialKind {
     /// Bark that fades into another level; it needs a mask, which costs.
     FadingBark,
     Foliage,
+    /// Foliage of which the mask lets more through.
+    CoarseFoliage,
     /// An envelope of leaves in this texture.
     Envelope(Box<Image>),
     /// Linear colours of trunk and crown.
@@ -104,10 +108,16 @@ pub(crate) fn species_meshes(
             vec![full_level(model, MaterialKind::Bark, PartSet::in_leaf(0))]
         }
     };
-    let variant = |model: &TreeModel| VariantMeshes { height_m: model.height_m(), lods: levels(model) };
+    let is_thinned = *style == LevelStyle::Thinned && !recipe.bake.decimations.is_empty();
+    let coarse_beams = |model: &TreeModel| if is_thinned { swaying_beams(&model.skeleton) } else { u32::MAX };
+    let variant = |model: &TreeModel| VariantMeshes {
+        lods: levels(model),
+        height_m: model.height_m(),
+        coarse_beams: coarse_beams(model),
+    };
     let variants = models.iter().map(variant).collect();
     let images = textures.filter(|_| has_images);
-    SpeciesMeshes { images: images.map(|it| SpeciesImages::new(&it, recipe.compresses_textures)), variants }
+    SpeciesMeshes { images: images.map(|it| SpeciesImages::new(species, &it, recipe.compresses_textures)), variants }
 }
 
 /// A level of [`LevelStyle::Thinned`] with the meshes of those of its parts that are wanted: the tree itself, or a thinned one. Only the last
@@ -118,12 +128,17 @@ pub(crate) fn remade_level(recipe: &LevelRecipe, model: &TreeModel, level: usize
     let decimation = level.checked_sub(1).and_then(|number| Some((number, bake.decimations.get(number)?)));
     let Some((number, decimation)) = decimation else { return full_level(model, bark(), wanted) };
     let wants = |part| wanted.contains(PartSet::one(level, part));
-    let ThinnedMeshes { meshes, bare_wood } = thinned(species, model, number, decimation);
+    let ThinnedMeshes { mut meshes, mut bare_wood } = thinned(species, model, number, decimation);
+    if level == bake.decimations.len() {
+        let woods = [Some(&mut meshes.wood), bare_wood.as_mut()].into_iter().flatten().map(|wood| &mut wood.sway);
+        woods.chain([&mut meshes.leaves.sway]).for_each(|sway| bind_to_swaying(&model.skeleton, sway));
+    }
+    let leaves = if is_coarse(number) { MaterialKind::CoarseFoliage } else { MaterialKind::Foliage };
     let wood = |wood: WoodVertices, part| MeshPart { mesh: wants(part).then(|| wood_mesh(&wood)), material: bark() };
     LodMeshes {
         wood: wood(meshes.wood, LevelPart::Wood),
         bare_wood: bare_wood.map(|it| wood(it, LevelPart::BareWood)),
-        leaves: foliage(&meshes.leaves, wants(LevelPart::Leaves)),
+        leaves: foliage(&meshes.leaves, leaves, wants(LevelPart::Leaves)),
         is_wood_nested: true,
     }
 }
@@ -133,13 +148,13 @@ fn full_level(model: &TreeModel, bark: MaterialKind, wanted: PartSet) -> LodMesh
     LodMeshes {
         bare_wood: None,
         wood: MeshPart { mesh: wants(LevelPart::Wood).then(|| wood_mesh(&model.wood)), material: bark },
-        leaves: foliage(&model.leaves, wants(LevelPart::Leaves)),
+        leaves: foliage(&model.leaves, MaterialKind::Foliage, wants(LevelPart::Leaves)),
         is_wood_nested: false,
     }
 }
 
-fn foliage(leaves: &LeafVertices, is_wanted: bool) -> Option<MeshPart> {
-    let part = || MeshPart { mesh: is_wanted.then(|| leaf_mesh(leaves)), material: MaterialKind::Foliage };
+fn foliage(leaves: &LeafVertices, material: MaterialKind, is_wanted: bool) -> Option<MeshPart> {
+    let part = || MeshPart { mesh: is_wanted.then(|| leaf_mesh(leaves)), material };
     (!leaves.indices.is_empty()).then(part)
 }
 
@@ -224,8 +239,8 @@ mod tests {
         let vertices = |lod: &LodMeshes| leaves(lod).map_or(0, |mesh| mesh.count_vertices());
         let shares: Vec<f32> =
             meshes.variants[0].lods.iter().map(|lod| vertices(lod) as f32 / 3.0 / polygons).collect();
-        // A tree of 14 m has 700 pixels of a picture of 1080 at 26.1 m, and the geometric mean of 700 and 100 at 69.0 m.
-        let expected = [1.0, 1.0, 30.0 / 69.0];
+        // A tree of 14 m has 700 pixels of a picture of 1080 at 26.1 m, and the geometric mean of 700 and 128 at 61.0 m.
+        let expected = [1.0, 1.0, 30.0 / 61.0];
         assert!(shares.iter().zip(expected).all(|(share, expected)| (share - expected).abs() < 0.005), "{shares:?}");
     }
 

@@ -157,13 +157,21 @@ pub(crate) fn finish_preparing_species(
         }
         stays
     });
-    for (handle, VariantMeshes { lods, height_m }) in stage.models.iter().zip(meshes.variants) {
+    for (handle, VariantMeshes { lods, height_m, coarse_beams }) in stage.models.iter().zip(meshes.variants) {
         let Some(model) = assets.models.get(handle) else { continue };
         let bounds = assets.exposure.aabb(model, &in_library.phenology);
         let lods = lods.into_iter().map(|lod| assets.add_lod(lod, &in_library.materials)).collect();
         let demand = PartDemand::default();
-        let mut variant =
-            PreparedVariant { age_step, lods, bounds, height_m, recipe: recipe.clone(), kept: PartSet::EMPTY, demand };
+        let mut variant = PreparedVariant {
+            age_step,
+            lods,
+            bounds,
+            height_m,
+            coarse_beams,
+            recipe: recipe.clone(),
+            kept: PartSet::EMPTY,
+            demand,
+        };
         variant.kept = match recipe.style {
             LevelStyle::Thinned => PartSet::in_leaf(variant.lods.len() - 1),
             LevelStyle::Paper | LevelStyle::Full => variant.all_parts(),

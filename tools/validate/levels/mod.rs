@@ -119,9 +119,7 @@ fn measure_level(scene: &mut TestScene, change: usize, sheet: &mut ContactSheet)
     let step = DITHER_STEP.max(STEP_M / scene.distance_m());
     let mut pop = 0.0_f64;
     for point in FADE_POINTS {
-        // An impostor fades in before its tree fades out: the two fades follow one another.
-        let (from, way) = if change == 2 { (0.78, 0.6) } else { (0.9, 0.2) };
-        let at = from + way * point;
+        let at = 0.9 + 0.2 * point;
         let [before, after] = [at, at + step].map(|share| scene.render(Shot::Fading(change, share)));
         pop = pop.max(difference(&before, &after) / wind);
     }
