@@ -52,6 +52,11 @@ impl<T: Clone + PartialEq> History<T> {
         self.now = self.states.len() - 1;
     }
 
+    /// Puts another value in the place of the one that is there now, without a step.
+    pub fn amend(&mut self, value: T) {
+        self.states[self.now].value = value;
+    }
+
     /// The pointer was released, or the keyboard went elsewhere: the next change is a step of its own.
     pub fn end_gesture(&mut self) {
         self.gesture = None;

@@ -2,9 +2,10 @@
 
 use super::{
     fields::all_fields,
-    file_session::{FileSession, Message},
+    file_session::Message,
     randomise::randomised,
     session::Session,
+    steps::Steps,
 };
 use crate::tree::Species;
 
