@@ -94,6 +94,7 @@ pub fn top_bar(ui: &mut Ui, panel: &mut Panel, dialog: &mut Option<Dialog>) {
 /// The bar under the picture: views and rows, age, season and wind.
 pub fn stage_bar(
     ui: &mut Ui,
+    panel: Panel,
     stage: &mut Stage,
     season: &mut Season,
     wind: &mut LiveSettings<Wind>,
@@ -118,8 +119,10 @@ pub fn stage_bar(
         ui.checkbox(&mut stage.compares, "Beside the saved")
             .on_hover_text("The tree as it is in its file stands to the left");
         ui.checkbox(&mut stage.turns, "Turn").on_hover_text("Ctrl+T");
-        ui.checkbox(&mut stage.shows_envelope, "Envelope")
-            .on_hover_text("The outline that branches do not leave: drag its base, its top and its side");
+        if panel == Panel::Species {
+            ui.checkbox(&mut stage.shows_envelope, "Envelope")
+                .on_hover_text("The outline that branches do not leave: drag its base, its top and its side");
+        }
     });
     ui.horizontal(|ui| {
         ui.set_height(ROW);

@@ -186,7 +186,7 @@ pub fn draw(ui: &mut Ui, state: &mut UiState, mut subjects: Subjects) -> Drawn {
             if state.panel.is_of_land() {
                 land_bar(ui, subjects.pose, subjects.season, subjects.wind);
             } else {
-                stage_bar(ui, subjects.stage, subjects.season, subjects.wind, mature_years);
+                stage_bar(ui, state.panel, subjects.stage, subjects.season, subjects.wind, mature_years);
             }
         });
     }
@@ -199,8 +199,8 @@ pub fn draw(ui: &mut Ui, state: &mut UiState, mut subjects: Subjects) -> Drawn {
             let response = pointer(ui, picture);
             let keys = picture_keys(ui, &response, "Picture of the tree: arrows turn it, page keys bring it nearer");
             let held = &mut state.envelope;
-            let is_free = subjects
-                .view
+            let view = subjects.view.filter(|_| state.panel == Panel::Species);
+            let is_free = view
                 .is_none_or(|view| envelope_in_picture(ui, &response, view, subjects.stage, held, subjects.session));
             move_stage(ui, &response, subjects.stage, &keys, is_free);
         }

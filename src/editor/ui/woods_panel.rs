@@ -115,14 +115,10 @@ fn corner(ui: &mut Ui, woods: &mut Woods) {
     labelled(ui, "Corner", "The one that was held last", |ui, named| {
         let drag = DragValue::new(&mut chosen).range(1..=handles.len()).suffix(format!(" of {}", handles.len()));
         ui.add_sized(vec2(84.0, ROW - 4.0), drag.speed(0.1)).labelled_by(named.id);
-        let plus = ui.small_button("+").on_hover_text("One more corner behind this one");
-        plus.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, "Add a corner"));
-        if plus.clicked() {
+        if ui.button("Split").on_hover_text("One more corner behind this one").clicked() {
             woods.add_corner();
         }
-        let minus = ui.small_button("−").on_hover_text("Remove this corner");
-        minus.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, "Remove the corner"));
-        if minus.clicked() {
+        if ui.button("Drop").on_hover_text("Remove this corner").clicked() {
             woods.corner = Some(number);
             woods.remove_corner();
         }

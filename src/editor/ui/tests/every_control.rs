@@ -150,6 +150,7 @@ impl Desk {
         let lists = self.of_role(Role::ComboBox);
         for (node, name, at) in &lists {
             let before = self.before();
+            let chosen = self.woods.chosen;
             let known: Vec<String> = self.nodes().into_iter().map(|(_, name, _)| name).collect();
             self.click(at.center());
             self.rest();
@@ -162,6 +163,9 @@ impl Desk {
             self.click(at.center());
             self.rest();
             self.expect_change(&before, &format!("{entry} of the list {name}"));
+            // Another element has other fields.
+            self.woods.chosen = chosen;
+            self.rest();
         }
         lists.len()
     }
@@ -215,7 +219,7 @@ fn every_control_of_a_species_changes_it_and_is_undone() {
         let titles = titles(desk.session.table());
         desk.unfold(&titles);
         let changed = desk.change_everything();
-        assert!(changed > 120, "{species}: {changed} controls");
+        assert!(changed > 80, "{species}: {changed} controls");
     }
 }
 
@@ -253,7 +257,7 @@ fn every_control_of_the_wind_and_the_levels_changes_them_and_is_undone() {
     let titles: Vec<String> = [&tables.levels, &tables.forest].into_iter().flat_map(titles).collect();
     levels.unfold(&titles);
     let changed = levels.change_everything();
-    assert!(changed > 40, "{changed} controls of the levels");
+    assert!(changed > 20, "{changed} controls of the levels");
 }
 
 /// Several changes of all kinds, undone to the start: what is there is what was there, and redone it is what it was.

@@ -3,8 +3,8 @@
 use super::desk::Desk;
 use crate::{
     editor::{
-        file_session::FileSession,
         envelope_handles::envelope_of,
+        file_session::FileSession,
         steps::Steps,
         ui::{Panel, dialogs::Dialog, theme::PANEL_WIDTH},
     },
@@ -167,6 +167,6 @@ fn the_top_of_the_envelope_is_dragged_in_the_picture_in_one_step() {
     assert_eq!(desk.stage.turn_rad, turn_rad, "the tree is not turned meanwhile");
     desk.key(Modifiers::COMMAND, Key::Z);
     assert_eq!(*desk.session.document(), original);
-    desk.drag(&[to, to + vec2(60.0, 0.0)]);
+    desk.drag(&[to + vec2(80.0, 0.0), to + vec2(140.0, 0.0)]);
     assert_ne!(desk.stage.turn_rad, turn_rad, "beside the handles it is");
 }
