@@ -42,7 +42,13 @@ const MAY_KNOW: [(&str, &[&str]); 16] = [
     ("grass", &["sway", "render"]),
     ("fire", &["sway", "wind", "render"]),
     ("forest", &["scatter", "cells", "terrain", "tree", "lod", "sway", "wind", "render"]),
-    ("editor", &["forest", "scatter", "terrain", "tree", "lod", "sway", "wind", "render", "dynamics", "texture"]),
+    (
+        "editor",
+        &[
+            "forest", "scatter", "terrain", "tree", "lod", "sway", "wind", "render", "dynamics", "texture", "query",
+            "export",
+        ],
+    ),
 ];
 
 /// Rooms that are all entities and systems.

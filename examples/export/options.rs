@@ -1,6 +1,7 @@
 //! Command-line options.
 
 use crate::arguments::{in_range, wind_speed, year};
+use bevy::math::Vec2;
 use bevy_windwood::export::{ExportLevels, ExportSettings, Instancing, LeafSides, MotionSettings};
 use clap::{Args, Parser, ValueEnum};
 use std::path::{Path, PathBuf};
@@ -73,6 +74,15 @@ pub struct StandOptions {
     /// Half the side of the square of the plan that is written, m.
     #[arg(long, default_value_t = 60.0, value_parser = reach_m)]
     pub reach: f32,
+    /// Middle of that square (x, z), m; it is the origin of the file.
+    #[arg(long, value_name = "X,Z", default_value = "0,0", value_parser = place, allow_hyphen_values = true)]
+    pub middle: Vec2,
+    /// A map of elevations with its middle at the origin, on which the plan grows. Level ground by default.
+    #[arg(long)]
+    pub ground: Option<PathBuf>,
+    /// Size of its cells, m, where the file does not say it: along x, and along z.
+    #[arg(long, value_name = "X,Z", value_parser = place)]
+    pub cells: Option<Vec2>,
     /// Different trees of each species.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=16))]
     pub variants: u32,
@@ -165,6 +175,13 @@ fn loop_s(text: &str) -> Result<f32, String> {
 
 fn rate_hz(text: &str) -> Result<f32, String> {
     in_range(text, 2.0, 120.0, "a second")
+}
+
+/// A pair of numbers, such as `120,-40`.
+fn place(text: &str) -> Result<Vec2, String> {
+    let number = |text: &str| in_range::<f32>(text.trim(), -1e6, 1e6, "m");
+    let (x, z) = text.split_once(',').ok_or("expected X,Z")?;
+    Ok(Vec2::new(number(x)?, number(z)?))
 }
 
 fn reach_m(text: &str) -> Result<f32, String> {

@@ -1,17 +1,23 @@
 //! The stand of a forest plan.
 
-use crate::{find, options::Options, read, tree::write};
-use bevy::math::{IVec2, Vec2, Vec3Swizzles};
+use crate::{
+    find,
+    options::{Options, StandOptions},
+    read,
+    tree::write,
+};
+use bevy::math::{DVec2, IVec2, Vec2, Vec3, Vec3Swizzles};
 use bevy_windwood::{
-    LevelGround,
+    Ground, LevelGround,
     export::{ExportedFiles, ExportedTree, StandInstance, stand_glb},
     scatter::{ForestPlan, Planted, Planter},
+    terrain::{Elevation, ElevationSettings, MapPlacement},
     tree::{
         Species, TreeModel,
         textures::{SpeciesTextures, species_textures},
     },
 };
-use std::time::Instant;
+use std::{fmt::Display, sync::Arc, time::Instant};
 
 /// A species of the plan, and the trees of one age that stand for all of it.
 struct Stock {
@@ -21,13 +27,14 @@ struct Stock {
     models: Vec<TreeModel>,
 }
 
-/// Writes the part of a plan about its origin.
+/// Writes a square of a plan.
 pub fn export(options: &Options, plan: &str) -> Result<(), String> {
     let start = Instant::now();
     let path = find(plan, "assets/forests", ".forest.ron");
     let plan = read(&path, ForestPlan::from_ron)?;
     let planter = Planter::new(&plan).map_err(|error| format!("{}: {error}", path.display()))?;
-    let planted = planted(&planter, options.stand.reach);
+    let ground = ground(&options.stand)?;
+    let planted = planted(&planter, &ground, &options.stand);
     let stocks = (0u8..).zip(planter.species()).map(|(number, name)| {
         let ages: Vec<f32> =
             planted.iter().filter(|plant| plant.species == number).map(|plant| plant.age_years).collect();
@@ -43,14 +50,37 @@ pub fn export(options: &Options, plan: &str) -> Result<(), String> {
     write(&ExportedFiles(vec![(format!("{}.glb", options.file_name()), glb)]), options, start)
 }
 
-/// What the plan has in the square about its origin, on level ground.
-fn planted(planter: &Planter, reach_m: f32) -> Vec<Planted> {
-    let cell = |place_m: f32| (place_m / planter.cell_m()).floor() as i32;
-    let (first, last) = (cell(-reach_m), cell(reach_m));
+/// The ground on which the plan grows.
+fn ground(options: &StandOptions) -> Result<Arc<dyn Ground>, String> {
+    let Some(path) = &options.ground else { return Ok(Arc::new(LevelGround(0.0))) };
+    let told = |error: &dyn Display| format!("{}: {error}", path.display());
+    let bytes = std::fs::read(path).map_err(|error| told(&error))?;
+    let cells = options.cells.map(Vec2::as_dvec2);
+    let settings = ElevationSettings {
+        cell_x_m: cells.map(|cells| cells.x),
+        cell_z_m: cells.map(|cells| cells.y),
+        ..ElevationSettings::default()
+    };
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let elevation = Elevation::read(&name, &bytes, &settings).map_err(|error| told(&error))?;
+    let samples = DVec2::new(elevation.grid.columns() as f64, elevation.grid.rows() as f64);
+    let corner_m = -0.5 * elevation.grid.cell_m() * (samples - 1.0);
+    let placement = MapPlacement { west_m: corner_m.x, north_m: corner_m.y, ..MapPlacement::default() };
+    Ok(Arc::new(elevation.into_map(placement).map_err(|error| told(&error))?))
+}
+
+/// What the plan has in the square, with places from its middle on.
+fn planted(planter: &Planter, ground: &Arc<dyn Ground>, options: &StandOptions) -> Vec<Planted> {
+    let StandOptions { middle, reach, .. } = *options;
+    let cell = |place_m: Vec2| (place_m / planter.cell_m()).floor().as_ivec2();
+    let (first, last) = (cell(middle - reach), cell(middle + reach));
+    let origin = Vec3::new(middle.x, ground.height_m(middle.as_dvec2()) as f32, middle.y);
     let (mut all, mut of_cell) = (Vec::new(), Vec::new());
-    for cell in (first..=last).flat_map(|z| (first..=last).map(move |x| IVec2::new(x, z))) {
-        planter.plant(cell, &LevelGround(0.0), &mut of_cell);
-        all.extend(of_cell.iter().filter(|plant| plant.position.xz().abs().cmple(Vec2::splat(reach_m)).all()));
+    for cell in (first.y..=last.y).flat_map(|z| (first.x..=last.x).map(move |x| IVec2::new(x, z))) {
+        planter.plant(cell, ground, &mut of_cell);
+        let from_middle = |plant: &Planted| Planted { position: plant.position - origin, ..*plant };
+        let is_inside = |plant: &Planted| plant.position.xz().abs().cmple(Vec2::splat(reach)).all();
+        all.extend(of_cell.iter().map(from_middle).filter(is_inside));
     }
     all
 }

@@ -5,6 +5,7 @@
 //!
 //! `cargo run --features editor --example workbench -- --help` lists the options.
 
+mod hand;
 mod land;
 mod options;
 mod pictures;
@@ -14,6 +15,7 @@ mod pictures;
 mod studio;
 #[path = "../support/mod.rs"]
 mod support;
+mod tour;
 
 use bevy::prelude::*;
 use bevy_windwood::{
@@ -29,6 +31,12 @@ use support::{capture, start};
 fn main() -> ExitCode {
     let mut options = Options::parse();
     options.image.choose_pictures_without_display(&options.out);
+    if options.tour {
+        options.image.headless = true;
+        if let Err(error) = tour::prepare(&mut options) {
+            return start::exit_code(Err(error));
+        }
+    }
     let engine = if options.image.headless {
         capture::headless_engine(None)
     } else {
@@ -58,7 +66,8 @@ fn main() -> ExitCode {
         .add_systems(Startup, studio::spawn)
         .add_plugins(land::plugin);
     if options.image.headless {
-        return start::exit_code(pictures::render(&mut app, &options));
+        let render = if options.tour { tour::run } else { pictures::render };
+        return start::exit_code(render(&mut app, &options));
     }
     app.add_systems(Startup, |mut commands: Commands| {
         commands.spawn((StageCamera, studio::projection()));

@@ -28,6 +28,10 @@ pub struct Options {
     /// Pictures to write, by name, separated by commas; all by default.
     #[arg(long, value_delimiter = ',')]
     pub pictures: Vec<String>,
+    /// Goes through the guide's first steps as a person would, by mouse and keys: makes a species, a wood on a real map and a GLB file, and
+    /// takes a picture of each step. All of it comes into the folder for pictures.
+    #[arg(long)]
+    pub tour: bool,
     /// Light colours in all pictures.
     #[arg(long)]
     pub light: bool,

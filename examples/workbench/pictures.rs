@@ -70,6 +70,7 @@ fn shots() -> Vec<Shot> {
             filter: "growth.trunk",
             ..default()
         },
+        Shot { name: "envelope", stage: Stage { shows_envelope: true, ..default() }, ..default() },
         row("ages", Arrangement::Ages),
         row("seasons", Arrangement::Seasons),
         row("variants", Arrangement::Variants),
@@ -109,12 +110,21 @@ pub fn render(app: &mut App, options: &Options) -> Result<(), String> {
             continue;
         }
         show(app, options, shot);
-        wait(app, shot)?;
-        let picture = capture::capture(app, &target, options.image.size)?;
-        let path = options.out.join(format!("workbench_{}.png", shot.name));
-        save(&picture, &path)?;
-        println!("{}", path.display());
+        shoot(app, &target, options, &format!("workbench_{}", shot.name))?;
     }
+    Ok(())
+}
+
+/// Waits for what is to be seen, and takes a picture of that name.
+///
+/// # Errors
+/// If it does not get ready, or the file cannot be written.
+pub fn shoot(app: &mut App, target: &Handle<Image>, options: &Options, name: &str) -> Result<(), String> {
+    wait(app, name)?;
+    let picture = capture::capture(app, target, options.image.size)?;
+    let path = options.out.join(format!("{name}.png"));
+    save(&picture, &path)?;
+    println!("{}", path.display());
     Ok(())
 }
 
@@ -143,7 +153,13 @@ fn show(app: &mut App, options: &Options, shot: &Shot) {
         }
         workbench.change(species, "Slender");
     }
+    set_theme(app, options);
+}
+
+/// Has panels in the colours that were asked for.
+pub fn set_theme(app: &mut App, options: &Options) {
     let theme = if options.light { ThemePreference::Light } else { ThemePreference::Dark };
+    let world = app.world_mut();
     let mut contexts = world.query_filtered::<&mut EguiContext, With<PrimaryEguiContext>>();
     contexts.iter_mut(world).for_each(|mut context| context.get_mut().set_theme(theme));
 }
@@ -154,7 +170,8 @@ fn open(workbench: &mut Workbench, file: &Path) {
     workbench.open_file(file);
 }
 
-fn wait(app: &mut App, shot: &Shot) -> Result<(), String> {
+fn wait(app: &mut App, name: &str) -> Result<(), String> {
+    let panel = app.world().resource::<Workbench>().panel;
     let start = Instant::now();
     // What is asked for has to be taken up before it can be seen to be missing.
     // Software takes a second for a picture of a tree: it is looked at when it is the right one.
@@ -169,11 +186,11 @@ fn wait(app: &mut App, shot: &Shot) -> Result<(), String> {
         app.world_mut().entity_mut(viewpoint).insert(eye);
         app.update();
         std::thread::sleep(Duration::from_millis(2));
-        is_ready = is_shown(app, shot.panel);
+        is_ready = is_shown(app, panel);
     }
     app.world_mut().despawn(viewpoint);
     if !is_ready {
-        return Err(format!("what the picture `{}` shows did not get ready", shot.name));
+        return Err(format!("what the picture `{name}` shows did not get ready"));
     }
     look(app, true);
     (0..SETTLING_FRAMES).for_each(|_| step(app));
@@ -198,7 +215,7 @@ fn camera(app: &mut App) -> Transform {
 }
 
 /// Switches the camera of the turntable on or off.
-fn look(app: &mut App, is_active: bool) {
+pub fn look(app: &mut App, is_active: bool) {
     let world = app.world_mut();
     let mut cameras = world.query_filtered::<&mut Camera, With<StageCamera>>();
     cameras.iter_mut(world).for_each(|mut camera| camera.is_active = is_active);

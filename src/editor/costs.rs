@@ -29,9 +29,22 @@ pub struct Step {
     pub ours_ms: f64,
 }
 
+/// What the trees of a species cost that are entities.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SpeciesCost {
+    pub name: String,
+    pub trees: usize,
+    /// Beams that are posed.
+    pub beams: usize,
+    /// Triangles at the full level.
+    pub triangles: usize,
+}
+
 /// The costs of the last seconds.
 #[derive(Clone, Debug, Default)]
 pub struct Costs {
+    /// Of the species there are, the dearest first.
+    pub species: Vec<SpeciesCost>,
     pub steps: VecDeque<Step>,
     /// Means of the last step, the dearest first: name, µs.
     pub systems: Vec<(&'static str, f64)>,
@@ -49,6 +62,12 @@ impl Costs {
         if self.frames.iter().map(|frame| frame.length).sum::<Duration>() >= STEP {
             self.end_step();
         }
+    }
+
+    /// Takes over what species cost, in any order.
+    pub fn set_species(&mut self, mut species: Vec<SpeciesCost>) {
+        species.sort_by(|a, b| b.triangles.cmp(&a.triangles).then_with(|| a.name.cmp(&b.name)));
+        self.species = species;
     }
 
     fn end_step(&mut self) {
@@ -75,6 +94,14 @@ impl Costs {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_dearest_species_comes_first() {
+        let of = |name: &str, triangles| SpeciesCost { name: name.into(), triangles, ..SpeciesCost::default() };
+        let mut costs = Costs::default();
+        costs.set_species(vec![of("birch", 10), of("oak", 30), of("beech", 10)]);
+        assert_eq!(costs.species, [of("oak", 30), of("beech", 10), of("birch", 10)]);
+    }
 
     #[test]
     fn frames_become_means_and_old_ones_are_forgotten() {

@@ -1,8 +1,8 @@
-//! What every session can do, whatever it edits: its file, its steps, and what has to be asked before anything is lost.
+//! What every session can do, whatever it edits: its file, and what has to be asked before anything is lost.
 
 use std::path::{Path, PathBuf};
 
-use super::document_file::OnDisk;
+use super::{document_file::OnDisk, steps::Steps};
 
 /// What is told about an action.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,7 +32,7 @@ pub enum Intent {
 }
 
 /// A session, whatever it edits.
-pub trait FileSession {
+pub trait FileSession: Steps {
     fn path(&self) -> &Path;
 
     /// How its files end.
@@ -57,19 +57,6 @@ pub trait FileSession {
 
     /// Leaves the question unanswered: nothing happens.
     fn dismiss_question(&mut self);
-
-    /// What undoing would take back.
-    fn undo_step(&self) -> Option<&str>;
-
-    /// What redoing would bring back.
-    fn redo_step(&self) -> Option<&str>;
-
-    fn undo(&mut self);
-
-    fn redo(&mut self);
-
-    /// The pointer was released, or the keyboard went elsewhere: the next change is a step of its own.
-    fn end_gesture(&mut self);
 
     /// Saves to the session's file. Asks first, where comments or another program's changes would be lost.
     fn save(&mut self);

@@ -7,6 +7,7 @@ use super::{
     map_fit::{MapFit, MapRequest, NoFit, Progress},
     session::Session,
     spline_points::{ControlPoint, height_m, with_height, with_patch},
+    steps::Steps,
 };
 use crate::{
     ground::Ground,
@@ -102,6 +103,14 @@ impl GroundDesk {
         match self.kind {
             GroundKind::Random | GroundKind::Map => &mut self.random,
             GroundKind::Spline => &mut self.spline,
+        }
+    }
+
+    /// Tells of something in the session of the kind that is open.
+    pub fn tell(&mut self, message: Option<Message>) {
+        match self.kind {
+            GroundKind::Random | GroundKind::Map => self.random.message = message,
+            GroundKind::Spline => self.spline.message = message,
         }
     }
 

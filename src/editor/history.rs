@@ -40,6 +40,13 @@ impl<T: Clone + PartialEq> History<T> {
         }
         self.states.truncate(self.now + 1);
         let goes_on = self.gesture.as_deref() == Some(step) && self.now > 0;
+        if goes_on && value == self.states[self.now - 1].value {
+            // A gesture that ends where it began is no step.
+            self.states.truncate(self.now);
+            self.now -= 1;
+            self.gesture = None;
+            return;
+        }
         if goes_on {
             self.states[self.now].value = value;
             return;
@@ -50,6 +57,11 @@ impl<T: Clone + PartialEq> History<T> {
             self.states.remove(0);
         }
         self.now = self.states.len() - 1;
+    }
+
+    /// Puts another value in the place of the one that is there now, without a step.
+    pub fn amend(&mut self, value: T) {
+        self.states[self.now].value = value;
     }
 
     /// The pointer was released, or the keyboard went elsewhere: the next change is a step of its own.
@@ -103,6 +115,20 @@ mod tests {
         assert!(history.undo() && *history.value() == 0);
         assert!(!history.undo() && history.redo_step() == Some("height"));
         assert!(history.redo() && *history.value() == 5);
+    }
+
+    #[test]
+    fn a_gesture_that_ends_where_it_began_is_no_step() {
+        let mut history = History::new(0);
+        history.change(1, "width");
+        history.end_gesture();
+        for value in [5, 3, 1] {
+            history.change(value, "height");
+        }
+        assert_eq!((*history.value(), history.undo_step()), (1, Some("width")));
+        // The pointer goes on without having been released.
+        history.change(2, "height");
+        assert!(history.undo() && *history.value() == 1 && history.undo_step() == Some("width"));
     }
 
     #[test]

@@ -11,7 +11,7 @@ use bevy::math::DVec2;
 
 use crate::terrain::{
     CovarianceModel, Elevation, ElevationMap, ElevationSettings, Fit, MapPlacement, TurningBandsSettings, Variogram,
-    VariogramSettings, fit_model,
+    VariogramSettings, best_first, fit_model,
 };
 
 /// Greatest size of a file.
@@ -98,7 +98,7 @@ impl MapFit {
             fits.push(fit_model(&variogram, model).map_err(|error| failed(&error))?);
             progress.step()?;
         }
-        fits.sort_by(|a, b| a.residual.total_cmp(&b.residual));
+        best_first(&mut fits);
         let notices = elevation.notices.iter().map(ToString::to_string).collect();
         let samples = DVec2::new(elevation.grid.columns() as f64, elevation.grid.rows() as f64);
         let corner_m = -0.5 * elevation.grid.cell_m() * (samples - 1.0);

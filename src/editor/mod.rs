@@ -8,8 +8,8 @@
 //!   - fields: `fields` (the table of all fields), `field_table` (how it is made), `field_text` (labels, units, ranges), `variants`,
 //!     `randomise`;
 //!   - what is edited: `document` (anything with a file), `species_document`, `plan_document`, `ground_documents`; `session` and
-//!     `file_session`, `history`, `document_file`, and `ron_tree` and `ron_merge`, which write changes into the text that a person wrote;
-//!     `randomiser` for a species;
+//!     `file_session`, `steps`, `history`, `document_file`, and `ron_tree` and `ron_merge`, which write changes into the text that a person wrote;
+//!     `randomiser` and `envelope_handles` for a species; `live_settings` for what the program has without a file;
 //!   - a wood: `woods` (what is chosen, the tool in hand), `plan_element` (areas and what is kept free, by their corners), `brush`,
 //!     `quadrat_histogram`;
 //!   - ground: `ground_desk`, `spline_points`, `ground_variogram`, `map_fit`;
@@ -24,6 +24,7 @@ mod diagram;
 mod document;
 mod document_file;
 mod ecs;
+mod envelope_handles;
 mod field_table;
 mod field_text;
 mod fields;
@@ -33,6 +34,7 @@ mod ground_documents;
 mod ground_variogram;
 mod history;
 mod land_pose;
+mod live_settings;
 mod map_fit;
 mod plan_document;
 mod plan_element;
@@ -47,6 +49,7 @@ mod species_document;
 mod spectrum;
 mod spline_points;
 mod stage;
+mod steps;
 mod tip_motion;
 mod ui;
 mod variants;

@@ -1,11 +1,6 @@
 //! Another individual of a species that is edited.
 
-use super::{
-    fields::all_fields,
-    file_session::{FileSession, Message},
-    randomise::randomised,
-    session::Session,
-};
+use super::{fields::all_fields, file_session::Message, randomise::randomised, session::Session, steps::Steps};
 use crate::tree::Species;
 
 /// Trees of one stand differ by about this share in each measure.

@@ -56,7 +56,7 @@ impl SceneView {
     }
 
     /// The direction in which a point of the screen looks.
-    fn direction(&self, at: Vec2) -> Vec3 {
+    pub fn direction(&self, at: Vec2) -> Vec3 {
         let share = (at - self.min) / (self.max - self.min);
         let ndc = Vec3::new(2.0 * share.x - 1.0, 1.0 - 2.0 * share.y, FAR_DEPTH);
         (self.world_from_clip.project_point3(ndc) - self.eye).normalize_or(Vec3::NEG_Y)

@@ -1,6 +1,6 @@
 //! What stands on the turntable: which trees, of which ages and seasons, and from where they are looked at.
 
-use bevy::math::Vec3;
+use bevy::math::{Vec2, Vec3};
 
 use super::diagram::View;
 use crate::tree::Season;
@@ -33,6 +33,12 @@ impl Arrangement {
 const AGES: [f32; 5] = [0.08, 0.2, 0.45, 1.0, 1.8];
 /// Individuals of the row.
 pub const VARIANTS: u32 = 4;
+/// For a drag over a point, rad.
+const DRAG_RAD: f32 = 0.006;
+/// For a point of the wheel, as a share of the distance.
+const WHEEL: f32 = 0.0025;
+const DISTANCES: [f32; 2] = [0.15, 3.0];
+const RISES_RAD: [f32; 2] = [-0.2, 1.4];
 /// Between the crowns of neighbours, as a share of their mean width.
 const GAP: f32 = 0.12;
 
@@ -57,6 +63,8 @@ pub struct Stage {
     pub distance: f32,
     /// Whether arrows show the wind about the tree.
     pub shows_wind: bool,
+    /// Whether the crown's envelope is drawn over it, with handles to drag.
+    pub shows_envelope: bool,
 }
 
 impl Default for Stage {
@@ -71,6 +79,7 @@ impl Default for Stage {
             rise_rad: 0.12,
             distance: 1.0,
             shows_wind: false,
+            shows_envelope: false,
         }
     }
 }
@@ -106,6 +115,18 @@ impl Stage {
             stands.insert(0, Stand { is_saved: true, ..one });
         }
         stands
+    }
+
+    /// A drag by so many points turns.
+    pub fn turn(&mut self, drag: Vec2) {
+        self.turn_rad = (self.turn_rad - DRAG_RAD * drag.x) % std::f32::consts::TAU;
+        self.rise_rad = (self.rise_rad + DRAG_RAD * drag.y).clamp(RISES_RAD[0], RISES_RAD[1]);
+    }
+
+    /// The wheel, by so many points, brings nearer and farther.
+    pub fn approach(&mut self, points: f32) {
+        let factor = (-WHEEL * points.clamp(-400.0, 400.0)).exp();
+        self.distance = (self.distance * factor).clamp(DISTANCES[0], DISTANCES[1]);
     }
 
     /// How many variants of the species have to be grown for it.
@@ -178,6 +199,18 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn drags_and_the_wheel_stay_within_limits() {
+        let mut stage = Stage::default();
+        stage.turn(Vec2::new(10.0, 1e4));
+        assert_eq!(stage.rise_rad, RISES_RAD[1]);
+        assert!(stage.turn_rad < Stage::default().turn_rad);
+        (0..100).for_each(|_| stage.approach(400.0));
+        assert_eq!(stage.distance, DISTANCES[0]);
+        (0..100).for_each(|_| stage.approach(-400.0));
+        assert_eq!(stage.distance, DISTANCES[1]);
     }
 
     #[test]

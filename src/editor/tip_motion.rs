@@ -1,6 +1,6 @@
 //! How the top of a tree moves in a wind: one period of it, and its spectrum beside the tree's own frequencies.
 
-use bevy::math::{Vec3, Vec4};
+use bevy::math::{Mat3, Vec3, Vec4};
 
 use super::spectrum::{Band, Transform, spectrum};
 use crate::{
@@ -10,6 +10,7 @@ use crate::{
     },
     sway::WindResponse,
     tree::TreeModel,
+    wind::Canopy,
 };
 
 /// Samples in a second: trunks and limbs are slower than half of it.
@@ -20,6 +21,8 @@ const ORDERS: [&str; 3] = ["trunk", "limbs", "boughs"];
 /// The motion of a tree's top.
 #[derive(Clone, Debug)]
 pub struct TipMotion {
+    /// Height of the tree, m.
+    pub height_m: f32,
     /// Time, s, and how far the top is from where it rests, along the wind, m.
     pub along: Vec<[f64; 2]>,
     /// The same across it.
@@ -30,24 +33,40 @@ pub struct TipMotion {
     pub own: Vec<(&'static str, f64)>,
 }
 
+/// How a tree stands in the wind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StandsInWind {
+    /// Its foot, m.
+    pub place: Vec3,
+    /// Its size over that of its model.
+    pub scale: f32,
+    /// Its rotation.
+    pub world_from_local: Mat3,
+    /// The stand about it.
+    pub canopy: Canopy,
+    /// Share of its leaves that it has.
+    pub leaf_share: f32,
+}
+
 impl TipMotion {
-    /// Of a tree at a place, with a share of its leaves. None of a tree without wood. It takes some milliseconds: meant for the
-    /// background.
-    pub fn of(model: &TreeModel, response: &WindResponse, place: Vec3, leaf_share: f32) -> Option<Self> {
+    /// Of a tree. None of one without wood. It takes some milliseconds: meant for the background.
+    pub fn of(model: &TreeModel, response: &WindResponse, stands: &StandsInWind) -> Option<Self> {
+        let StandsInWind { place, scale, world_from_local, canopy, leaf_share } = *stands;
         let (beams, rest) = stem_to_top(model)?;
         let (frame, period_s) = (response.field.frame(), response.field.period_s());
-        let wind = response.beam_wind();
-        let tree =
-            TreeInWind { map: response.basis.map(), wind, to_wind: frame.wind_from_world(), scale: 1.0, leaf_share };
+        let wind = response.beam_wind_in(&canopy);
+        let to_wind = frame.wind_from_world() * world_from_local;
+        let tree = TreeInWind { map: response.basis.map(), wind, to_wind, scale, leaf_share };
         let poser = TreePoser::new(&beams, &tree);
         let mut poses = vec![BeamPose::REST; beams.len()];
         let mut responses: Vec<Vec4> = Vec::new();
         let mut off_rest = |time_s: f64| {
             let place = response.place(place, time_s);
             response.table.responses(&place, poser.rows(), &mut responses);
-            poser.pose(&responses, response.wind_at(&wind.stand, &place, model.height_m()), &mut poses);
+            let blowing = response.wind_at(&wind.stand, &place, model.height_m() * scale);
+            poser.pose(&responses, world_from_local.transpose() * blowing, &mut poses);
             let top = poses.last().zip(beams.last()).map_or(rest, |(pose, beam)| pose.carry(beam, 1.0, rest).0);
-            frame.to_wind(top - rest)
+            to_wind * (scale * (top - rest))
         };
         let count = (period_s * SAMPLES_PER_S).round().max(1.0) as usize;
         let times_s = (0..count).map(|sample| sample as f64 * period_s / count as f64);
@@ -58,7 +77,13 @@ impl TipMotion {
             })
             .unzip();
         let spectrum = spectrum(&[Transform::new(along.iter().map(|[_, off]| *off), period_s)]);
-        Some(Self { along, across, spectrum, own: own_frequencies(model, leaf_share) })
+        Some(Self {
+            height_m: model.height_m() * scale,
+            along,
+            across,
+            spectrum,
+            own: own_frequencies(model, scale, leaf_share),
+        })
     }
 }
 
@@ -86,12 +111,13 @@ pub fn frequency_hz(beam: &BeamDynamics, leaf_share: f32) -> f32 {
     classes.lowest_hz * classes.ratio.powf(beam.sway(leaf_share).class)
 }
 
-fn own_frequencies(model: &TreeModel, leaf_share: f32) -> Vec<(&'static str, f64)> {
+/// Of a tree of that size over its model's: a larger one sways more slowly.
+fn own_frequencies(model: &TreeModel, scale: f32, leaf_share: f32) -> Vec<(&'static str, f64)> {
     let beams = || model.skeleton.beams.iter().zip(&model.beams);
     let slowest = |(order, name): (usize, &&'static str)| {
         let of_order = beams().filter(|(beam, _)| usize::from(beam.order) == order);
         let hz = of_order.map(|(_, beam)| frequency_hz(beam, leaf_share)).reduce(f32::min)?;
-        Some((*name, f64::from(hz)))
+        Some((*name, f64::from(hz / scale)))
     };
     ORDERS.iter().enumerate().filter_map(slowest).collect()
 }
@@ -104,13 +130,28 @@ mod tests {
         tree::{Species, mechanics::tree_sway},
         wind::{FieldSettings, WindField},
     };
+    use bevy::math::{Dir2, Vec2};
     use std::sync::Arc;
 
+    fn alone() -> StandsInWind {
+        StandsInWind {
+            place: Vec3::ZERO,
+            scale: 1.0,
+            world_from_local: Mat3::IDENTITY,
+            canopy: Canopy::default(),
+            leaf_share: 1.0,
+        }
+    }
+
     fn motion(speed: f32) -> (TipMotion, TreeModel) {
-        let field = WindField::synthesise(&FieldSettings { speed, ..FieldSettings::default() }).unwrap();
+        motion_of(FieldSettings { speed, ..FieldSettings::default() }, &alone())
+    }
+
+    fn motion_of(wind: FieldSettings, stands: &StandsInWind) -> (TipMotion, TreeModel) {
+        let field = WindField::synthesise(&wind).unwrap();
         let response = WindResponse::new(Arc::new(field), &SwaySettings::default());
         let model = TreeModel::bake(&Species::default(), 40.0, 1);
-        (TipMotion::of(&model, &response, Vec3::ZERO, 1.0).unwrap(), model)
+        (TipMotion::of(&model, &response, stands).unwrap(), model)
     }
 
     #[test]
@@ -127,6 +168,22 @@ mod tests {
             motion.spectrum.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap().value
         };
         assert!(at(trunk) > 4.0 * at(2.0 * trunk));
+    }
+
+    #[test]
+    fn a_tree_that_is_turned_with_the_wind_moves_as_before_and_a_larger_one_more_slowly() {
+        let (own, _) = motion(10.0);
+        let angle_rad = 2.0_f32;
+        let direction = Dir2::new(Vec2::new(angle_rad.cos(), -angle_rad.sin())).unwrap();
+        let wind = FieldSettings { speed: 10.0, direction, ..FieldSettings::default() };
+        let world_from_local = Mat3::from_rotation_y(angle_rad);
+        let (turned, _) = motion_of(wind.clone(), &StandsInWind { world_from_local, ..alone() });
+        let reach = own.along.iter().map(|[_, off]| off.abs()).fold(0.0, f64::max);
+        let difference = |(a, b): (&[f64; 2], &[f64; 2])| (a[1] - b[1]).abs();
+        let worst = own.along.iter().zip(&turned.along).map(difference).fold(0.0, f64::max);
+        assert!(worst < 1e-3 * reach, "{worst} of {reach}");
+        let (large, _) = motion_of(wind, &StandsInWind { scale: 1.5, world_from_local, ..alone() });
+        assert!((large.own[0].1 * 1.5 / own.own[0].1 - 1.0).abs() < 1e-5, "{:?} {:?}", large.own, own.own);
     }
 
     #[test]

@@ -7,10 +7,10 @@ use bevy::math::Vec2;
 use super::{
     brush::{Brush, Stroke},
     fields::Section,
-    file_session::FileSession,
     plan_document::area_table,
     plan_element::{Element, as_mask, as_polygon, new_area, rounded},
     session::Session,
+    steps::Steps,
 };
 use crate::scatter::{
     ForestPlan,
@@ -63,13 +63,24 @@ pub struct Woods {
     pub tool: Tool,
     pub brush: Brush,
     grip: Option<Grip>,
+    /// Whether it is held without a pointer.
+    pub is_held_by_keys: bool,
     table: Option<(Element, f32, Area, Arc<Section>)>,
 }
 
 impl Woods {
     pub fn new(session: Session<ForestPlan>) -> Self {
         let chosen = Element::all(session.document()).next();
-        Self { session, chosen, corner: None, tool: Tool::default(), brush: Brush::default(), grip: None, table: None }
+        Self {
+            session,
+            chosen,
+            corner: None,
+            tool: Tool::default(),
+            brush: Brush::default(),
+            grip: None,
+            is_held_by_keys: false,
+            table: None,
+        }
     }
 
     pub fn plan(&self) -> &ForestPlan {
@@ -176,6 +187,7 @@ impl Woods {
 
     /// Lets go.
     pub fn release(&mut self) {
+        self.is_held_by_keys = false;
         if self.grip.take().is_some() {
             self.session.end_gesture();
         }

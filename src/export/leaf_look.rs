@@ -12,10 +12,15 @@
 //! where `R` changes nothing, for all. Colours of vertices are at most 1 in a file, so the texture is lightened by `gain`, channel by
 //! channel: as far as the lightest vertex asks for, and the texture has room.
 
-use super::recolour::{Recolouring, SeasonColour, leafness};
 use crate::{
     texture::{MASK_CUT_OFF, TextureData, colour_bytes, linear},
-    tree::{Species, phenology::Phenology, textures::SpeciesTextures, vertices::LeafVertices},
+    tree::{
+        Species,
+        phenology::Phenology,
+        recolour::{Recolouring, SeasonColour, leafness},
+        textures::SpeciesTextures,
+        vertices::LeafVertices,
+    },
 };
 use bevy::math::Vec3;
 

@@ -3,7 +3,7 @@
 //! | stage | input -> output | file |
 //! |---|---|---|
 //! | settings | season, levels, motion; checked field by field | `settings.rs` |
-//! | look | species, textures, time of the year -> colours, textures and masks as they are then | `look.rs`, `leaf_look.rs`, `recolour.rs` |
+//! | look | species, textures, time of the year -> colours, textures and masks as they are then | `look.rs`, `leaf_look.rs` |
 //! | level | model -> vertices with colours and tangents, each bound to a place on a beam | `level.rs`, `surface.rs` |
 //! | skin | model, wind -> which beams become joints, and the weights of each place | `skin.rs`, `joints.rs` |
 //! | motion | response table -> a loop of the joints' poses without a seam | `motion.rs`, `looped.rs` |
@@ -37,7 +37,6 @@ mod motion;
 mod obj;
 mod picture;
 mod polygons;
-mod recolour;
 mod settings;
 mod skin;
 mod surface;

@@ -103,8 +103,13 @@ impl Fit {
 /// [`SettingError`] where the variogram has fewer classes than a model has unknowns.
 pub fn fit_models(variogram: &Variogram, models: &[CovarianceModel]) -> Result<Vec<Fit>, SettingError> {
     let mut fits = models.iter().map(|&model| fit_model(variogram, model)).collect::<Result<Vec<_>, _>>()?;
-    fits.sort_by(|a, b| a.residual.total_cmp(&b.residual));
+    best_first(&mut fits);
     Ok(fits)
+}
+
+/// Puts fits into the order of what they miss.
+pub(crate) fn best_first(fits: &mut [Fit]) {
+    fits.sort_by(|a, b| a.residual.total_cmp(&b.residual));
 }
 
 /// Fits one model to a variogram.

@@ -88,6 +88,8 @@ pub use elevation::{Elevation, ElevationNotice, ElevationSettings, RawLayout, Ra
 pub use elevation_grid::ElevationGrid;
 pub use elevation_map::{ElevationMap, Interpolation, MapPlacement};
 pub use error::TerrainError;
+#[cfg(feature = "editor")]
+pub(crate) use fit::best_first;
 pub use fit::{Fit, SHORTEST_WAVE_CELLS, fit_model, fit_models};
 pub use layers::Layers;
 pub use plugin::TerrainPlugin;

@@ -21,7 +21,7 @@
 //! | **model** | all of the above, called from one place | [`TreeModel::bake`], in `model.rs` |
 //!
 //! Beside the model a species has textures, which do not depend on the individual: [`textures`] renders them from
-//! [`bark`], [`leaf`] and [`crown`]. [`phenology`] says what leaves look like at a time of the year.
+//! [`bark`], [`leaf`] and [`crown`]. [`phenology`] says what leaves look like at a time of the year, [`recolour`] of what colour they are then.
 //!
 //! # From model to tree
 //! `ecs/species_models.rs` bakes in the background and stores the models in [`SpeciesModels`]. `ecs/grow_trees.rs` gives
@@ -50,6 +50,7 @@ pub mod mechanics;
 mod model;
 pub mod phenology;
 mod plugin;
+pub mod recolour;
 pub mod skeleton;
 pub mod species;
 pub mod textures;

@@ -13,7 +13,10 @@ mod change;
 #[path = "../support/chart.rs"]
 mod chart;
 mod cost;
+mod cpu_clock;
 mod crown_figures;
+#[cfg(feature = "editor")]
+mod editor;
 mod extremes;
 mod figure9;
 mod figure9_chart;
@@ -87,6 +90,9 @@ enum Topic {
     Grid,
     /// What a frame costs, pass by pass: vertices, fragments, time. A hundred thousand trees take `--trees 100000`.
     Cost,
+    /// The workbench: what it adds to a frame, closed and open, and how long a changed tree takes; with the feature `export`, an export.
+    #[cfg(feature = "editor")]
+    Editor,
     /// Every level of detail against the full tree, and how visible its changes are. Takes some minutes.
     Levels,
 }
@@ -141,6 +147,8 @@ fn main() -> ExitCode {
         Topic::Figure9 => figure9::run(options.frames, options.trees, &options.out.join("figure9.png")),
         Topic::Grid => grid::run(options.frames, options.trees, &options.out),
         Topic::Cost => cost::run(options.trees, &options.out),
+        #[cfg(feature = "editor")]
+        Topic::Editor => editor::run(),
         Topic::Levels => levels::run(&options.out.join("levels.png"), options.species.as_deref(), options.year),
     };
     report.print();

@@ -91,3 +91,27 @@ fn freeze(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn f2_opens_and_closes_it() {
+        let mut app = App::new();
+        app.init_resource::<ButtonInput<KeyCode>>()
+            .insert_resource(Workbench::new(None, None, None, false))
+            .add_systems(Update, toggle);
+        for is_open in [true, false, true] {
+            let mut keys = app.world_mut().resource_mut::<ButtonInput<KeyCode>>();
+            keys.reset_all();
+            keys.press(KeyCode::F2);
+            app.update();
+            assert_eq!(app.world().resource::<Workbench>().is_open, is_open);
+            // What is held is not pressed again.
+            app.world_mut().resource_mut::<ButtonInput<KeyCode>>().clear();
+            app.update();
+            assert_eq!(app.world().resource::<Workbench>().is_open, is_open);
+        }
+    }
+}

@@ -2,6 +2,7 @@
 
 use super::{turntable::StageTree, workbench::Workbench};
 use crate::{
+    background::{Work, spawn_work},
     editor::diagram::{Diagram, View, diagram},
     render::{LevelOfDetail, TreeMeshes},
     tree::{Grown, Season, Tree, TreeModel},
@@ -11,7 +12,7 @@ use bevy::{
     light::{NotShadowCaster, NotShadowReceiver},
     mesh::{Indices, PrimitiveTopology},
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 
 /// The diagram of a tree.
@@ -22,7 +23,7 @@ pub(super) struct DiagramOf(Entity);
 #[derive(Component)]
 pub(super) struct MakingDiagram {
     key: (AssetId<TreeModel>, View),
-    task: Task<Option<Diagram>>,
+    task: Work<Option<Diagram>>,
 }
 
 /// What the diagram of a tree was made of.
@@ -46,7 +47,7 @@ pub(super) fn begin_diagrams(
         let Some(model) = models.get(&grown.model).filter(|_| !is_known) else { continue };
         let (model, decimations) = (model.clone(), levels.bake.decimations.clone());
         let leaf_share = model.leaf_season.share(season.wrapped() + tree.season_shift());
-        let task = AsyncComputeTaskPool::get().spawn(async move { diagram(&model, view, &decimations, leaf_share) });
+        let task = spawn_work(move || diagram(&model, view, &decimations, leaf_share));
         commands.entity(entity).insert(MakingDiagram { key, task });
     }
 }
@@ -64,6 +65,10 @@ pub(super) fn show_diagrams(
         let Some(made) = block_on(poll_once(&mut making.task)) else { continue };
         shown.iter().filter(|(_, of)| of.0 == tree).for_each(|(old, _)| commands.entity(old).despawn());
         commands.entity(tree).remove::<MakingDiagram>().insert(MadeDiagram(making.key.0, making.key.1));
+        let made = made.unwrap_or_else(|panic| {
+            workbench.tell_panic(&panic, "the lit tree is shown");
+            None
+        });
         let Some(diagram) = made else {
             workbench.legend.clear();
             continue;

@@ -1,6 +1,8 @@
 //! The workbench in an app.
 
 mod camera;
+#[cfg(feature = "export")]
+mod export;
 mod land;
 mod manners;
 mod measure;
@@ -16,7 +18,7 @@ use self::{
     camera::{scale_panels, switch_camera},
     land::{note_view, show_land},
     manners::is_open,
-    measure::{Measuring, measure_tip, measure_wind, note_costs, show_arrows},
+    measure::{Measuring, measure_tip, measure_wind, note_costs, note_species_costs, point_at_tree, show_arrows},
     mesh::{begin_diagrams, hide_trees, show_diagrams},
     panels::draw_panels,
     show_ground::{BuiltGround, build_ground, fit_map, raise_ground},
@@ -25,10 +27,14 @@ use self::{
     turntable::{arrange_trees, place_trees, turn},
     workbench::Workbench,
 };
-use crate::{plugin_checks::require_plugin, render::TreeRenderPlugin, schedule::WindwoodSystems, timing::timed};
-use bevy::{camera::CameraUpdateSystems, prelude::*};
+use super::ui::Panel;
+use crate::{
+    plugin_checks::require_plugin, query::TreePlaces, render::TreeRenderPlugin, schedule::WindwoodSystems,
+    timing::timed,
+};
+use bevy::{camera::CameraUpdateSystems, prelude::*, time::common_conditions::on_real_timer};
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass};
-use std::path::PathBuf;
+use std::{path::PathBuf, time::Duration};
 
 /// The workbench: panels that edit species, woods, the ground, the wind and levels of detail while the program runs. Add it after
 /// [`WindwoodPlugins`](crate::WindwoodPlugins); F2 opens and closes it.
@@ -47,6 +53,18 @@ pub struct EditorPlugin {
     pub turntable: bool,
     /// Whether it is open from the beginning.
     pub starts_open: bool,
+}
+
+/// Between two counts of what species cost.
+const COUNTING: Duration = Duration::from_secs(1);
+
+fn shows_costs(workbench: Res<Workbench>) -> bool {
+    workbench.is_open && workbench.panel == Panel::Levels
+}
+
+/// Whether it is told which tree is under the pointer. Without `TreeQueryPlugin` nobody can tell.
+fn is_pointing(workbench: Res<Workbench>, places: Option<Res<TreePlaces>>) -> bool {
+    places.is_some() && workbench.panel == Panel::Wind && workbench.pointer.is_some()
 }
 
 impl Plugin for EditorPlugin {
@@ -75,7 +93,7 @@ impl Plugin for EditorPlugin {
                     switch_camera,
                     (
                         apply_species.run_if(has_species_to_show),
-                        (measure_wind, measure_tip).run_if(is_open),
+                        (point_at_tree.run_if(is_pointing), measure_wind, measure_tip).run_if(is_open),
                         show_arrows,
                     )
                         .before(WindwoodSystems::Bake),
@@ -94,7 +112,13 @@ impl Plugin for EditorPlugin {
                 )
                     .run_if(is_open),
             )
-            .add_systems(Last, note_costs.run_if(is_open));
+            .add_systems(
+                Last,
+                (note_costs.run_if(is_open), note_species_costs.run_if(shows_costs).run_if(on_real_timer(COUNTING))),
+            );
+        #[cfg(feature = "export")]
+        app.init_resource::<export::Exporting>()
+            .add_systems(Update, export::export_tree.run_if(is_open).before(WindwoodSystems::Bake));
         // What the panels cost is told with the rest.
         let draw_panels = timed!(app, draw_panels).run_if(is_open);
         app.add_systems(EguiPrimaryContextPass, draw_panels);

@@ -2,7 +2,7 @@
 
 use super::workbench::Workbench;
 use crate::{
-    editor::ui::{self, GroundFacts, Subjects, WindFacts, WoodsFacts},
+    editor::ui::{self, GroundFacts, LevelSettings, Subjects, WindFacts, WoodsFacts},
     forest::ForestSettings,
     render::LevelOfDetail,
     sway::ActiveSway,
@@ -33,9 +33,11 @@ pub(super) fn draw_panels(mut contexts: EguiContexts, mut workbench: ResMut<Work
     let whole = UiBuilder::new().layer_id(LayerId::background()).max_rect(context.viewport_rect());
     let mut ui = Ui::new(context.clone(), Id::new("windwood workbench"), whole);
     let workbench = workbench.bypass_change_detection();
-    let (mut new_season, mut new_wind, mut new_levels) = (*season, wind.clone(), levels.clone());
+    let mut new_season = *season;
     let forest = forests.iter_mut().next();
-    let mut new_forest = forest.as_ref().map(|forest| (**forest).clone());
+    workbench.wind.follow(&wind);
+    let of_forest = forest.as_ref().map(|forest| (**forest).clone());
+    workbench.levels.follow(&LevelSettings { levels: levels.clone(), forest: of_forest });
     workbench.ui.panel = workbench.panel;
     let drawn = ui::draw(
         &mut ui,
@@ -44,11 +46,11 @@ pub(super) fn draw_panels(mut contexts: EguiContexts, mut workbench: ResMut<Work
             session: &mut workbench.session,
             stage: &mut workbench.stage,
             season: &mut new_season,
-            wind: &mut new_wind,
+            wind: &mut workbench.wind,
             wind_table: &workbench.wind_table,
             wind_facts: WindFacts {
                 measures: workbench.measures.as_ref(),
-                tip: workbench.tip.as_ref(),
+                tip: workbench.tip.as_ref().map(|(name, tip)| (name.as_str(), tip)),
                 is_changing: !active_wind.is_settled() || !sway.is_settled(),
             },
             woods: &mut workbench.woods,
@@ -64,24 +66,31 @@ pub(super) fn draw_panels(mut contexts: EguiContexts, mut workbench: ResMut<Work
             },
             pose: &mut workbench.pose,
             view: workbench.land.view.as_ref(),
-            levels: &mut new_levels,
-            forest: new_forest.as_mut(),
+            levels: &mut workbench.levels,
             level_tables: &workbench.level_tables,
             is_frozen: &mut workbench.is_frozen,
             costs: &workbench.costs,
             tree: &workbench.tree,
+            is_exporting: workbench.is_exporting,
             legend: &workbench.legend,
             has_turntable: workbench.has_turntable,
         },
     );
     workbench.panel = workbench.ui.panel;
     workbench.picture = Some((drawn.picture, context.pixels_per_point()));
+    workbench.pointer = drawn.pointer.map(|at| Vec2::new(at.x, at.y));
     workbench.is_quitting |= drawn.is_quitting;
-    workbench.is_cancelled |= drawn.is_cancelled;
+    workbench.is_cancelled |= drawn.cancelled.growing;
+    workbench.is_export_cancelled |= drawn.cancelled.exporting;
+    workbench.export_to = drawn.export_to.or(workbench.export_to.take());
     season.set_if_neq(new_season);
-    wind.set_if_neq(new_wind);
-    levels.set_if_neq(new_levels);
-    if let Some((mut forest, new)) = forest.zip(new_forest) {
-        forest.set_if_neq(new);
+    if let Some(changed) = workbench.wind.take_change() {
+        *wind = changed;
+    }
+    if let Some(changed) = workbench.levels.take_change() {
+        levels.set_if_neq(changed.levels);
+        if let Some((mut forest, changed)) = forest.zip(changed.forest) {
+            forest.set_if_neq(changed);
+        }
     }
 }

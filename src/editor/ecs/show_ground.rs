@@ -2,6 +2,7 @@
 
 use super::workbench::Workbench;
 use crate::{
+    background::{Work, spawn_work},
     editor::{
         ground_desk::{Fitting, GroundPlan},
         ground_variogram::GroundVariogram,
@@ -12,7 +13,7 @@ use crate::{
 };
 use bevy::{
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 use std::{
     sync::Arc,
@@ -31,10 +32,10 @@ pub(super) struct LandTerrain;
 pub(super) struct BuiltGround {
     pub ground: Option<Arc<dyn Ground>>,
     of: Option<GroundPlan>,
-    building: Option<Task<Option<Built>>>,
+    building: Option<Work<Option<Built>>>,
     raised: Option<Arc<dyn Ground>>,
     since: Option<Instant>,
-    fitting: Option<Task<Result<MapFit, NoFit>>>,
+    fitting: Option<Work<Result<MapFit, NoFit>>>,
 }
 
 /// Ground, and its variogram where it is random.
@@ -68,9 +69,13 @@ pub(super) fn build_ground(mut workbench: ResMut<Workbench>, mut built: ResMut<B
     if let Some(task) = &mut built.building {
         let Some(done) = block_on(poll_once(task)) else { return };
         built.building = None;
-        if let Some(done) = done {
-            built.ground = Some(done.ground);
-            workbench.land.variogram = done.variogram;
+        match done {
+            Ok(Some(done)) => {
+                built.ground = Some(done.ground);
+                workbench.land.variogram = done.variogram;
+            }
+            Ok(None) => {}
+            Err(panic) => workbench.tell_panic(&panic, "the last good ground stays"),
         }
     }
     workbench.land.is_building = false;
@@ -80,7 +85,7 @@ pub(super) fn build_ground(mut workbench: ResMut<Workbench>, mut built: ResMut<B
     };
     workbench.land.is_building = true;
     built.of = Some(plan.clone());
-    built.building = Some(AsyncComputeTaskPool::get().spawn(async move { build(&plan) }));
+    built.building = Some(spawn_work(move || build(&plan)));
 }
 
 /// Has the terrain be the ground that was built, where that is wanted: our own, or else the game's.
@@ -119,13 +124,13 @@ pub(super) fn fit_map(mut workbench: ResMut<Workbench>, mut built: ResMut<BuiltG
     if let Some(task) = &mut built.fitting {
         let Some(fit) = block_on(poll_once(task)) else { return };
         built.fitting = None;
-        workbench.ground.take_fit(fit);
+        workbench.ground.take_fit(fit.unwrap_or_else(|panic| Err(NoFit::Failed(panic.to_string()))));
     }
     if matches!(workbench.ground.fitting, Fitting::Wanted) {
         let progress = Arc::new(Progress::default());
         let (request, shared) = (workbench.ground.request.clone(), progress.clone());
         workbench.ground.fitting = Fitting::Running(progress);
-        built.fitting = Some(AsyncComputeTaskPool::get().spawn(async move { MapFit::of(&request, &shared) }));
+        built.fitting = Some(spawn_work(move || MapFit::of(&request, &shared)));
     }
 }
 

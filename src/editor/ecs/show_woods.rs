@@ -2,13 +2,14 @@
 
 use super::workbench::Workbench;
 use crate::{
+    background::{Work, spawn_work},
     editor::{file_session::FileSession, plan_element::Element, quadrat_histogram::QuadratHistogram, ui::Panel},
     forest::{Forest, ForestCells},
     scatter::{ForestPlan, plan::Area},
 };
 use bevy::{
     prelude::*,
-    tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
+    tasks::{block_on, poll_once},
 };
 use std::time::{Duration, Instant};
 
@@ -21,7 +22,7 @@ pub(super) struct AppliedPlan {
     pub handle: Handle<ForestPlan>,
     plan: Option<ForestPlan>,
     since: Option<Instant>,
-    counting: Option<Task<Result<QuadratHistogram, String>>>,
+    counting: Option<Work<Result<QuadratHistogram, String>>>,
     counted: Option<Counted>,
 }
 
@@ -91,7 +92,7 @@ pub(super) fn count_quadrats(mut workbench: ResMut<Workbench>, mut applied: ResM
     if let Some(task) = &mut applied.counting {
         let Some(histogram) = block_on(poll_once(task)) else { return };
         applied.counting = None;
-        workbench.land.histogram = Some(histogram);
+        workbench.land.histogram = Some(histogram.unwrap_or_else(|panic| Err(panic.to_string())));
     }
     if workbench.panel != Panel::Woods {
         return;
@@ -109,7 +110,7 @@ pub(super) fn count_quadrats(mut workbench: ResMut<Workbench>, mut applied: ResM
     let areas = plan.areas[..=number].to_vec();
     let alone = ForestPlan { areas, cell_m: plan.cell_m, seed: plan.seed, ..ForestPlan::default() };
     applied.counted = Some(counted);
-    applied.counting = Some(AsyncComputeTaskPool::get().spawn(async move { QuadratHistogram::of(&alone, number) }));
+    applied.counting = Some(spawn_work(move || QuadratHistogram::of(&alone, number)));
 }
 
 /// Notes what stands, and whether more is to come.

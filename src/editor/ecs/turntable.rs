@@ -8,8 +8,7 @@ use crate::{
     },
     tree::{Grown, Season, Species, Tree, TreeModel},
 };
-use bevy::{camera::Viewport, input::mouse::AccumulatedMouseMotion, input::mouse::AccumulatedMouseScroll, prelude::*};
-use bevy_egui::input::EguiWantsInput;
+use bevy::{camera::Viewport, prelude::*};
 
 /// The camera of the turntable. It is moved by the workbench, and its picture is what the panels leave free.
 #[derive(Component, Clone, Copy, Debug, Default)]
@@ -26,12 +25,6 @@ pub(super) struct StageTree {
 
 /// One turn takes so long, s.
 const TURN_S: f32 = 24.0;
-/// For a drag of a pixel, rad.
-const DRAG_RAD: f32 = 0.006;
-/// For a step of the wheel, a share of the distance.
-const WHEEL: f32 = 0.08;
-const DISTANCES: [f32; 2] = [0.15, 3.0];
-const RISES_RAD: [f32; 2] = [-0.2, 1.4];
 /// A wood or ground is seen as far as this, m.
 const FARTHEST_M: f32 = 40_000.0;
 
@@ -138,33 +131,13 @@ fn viewport(points: bevy_egui::egui::Rect, scale: f32, camera: &Camera) -> Optio
     has_area.then(|| Viewport { physical_position: min, physical_size: size, ..default() })
 }
 
-/// Turns the trees by the mouse, and by themselves.
-pub(super) fn turn(
-    time: Res<Time<Real>>,
-    buttons: Option<Res<ButtonInput<MouseButton>>>,
-    motion: Option<Res<AccumulatedMouseMotion>>,
-    scroll: Option<Res<AccumulatedMouseScroll>>,
-    wants: Res<EguiWantsInput>,
-    mut workbench: ResMut<Workbench>,
-) {
-    if workbench.panel.is_of_land() {
-        return;
+/// Has the trees turn by themselves.
+pub(super) fn turn(time: Res<Time<Real>>, mut workbench: ResMut<Workbench>) {
+    let workbench = workbench.bypass_change_detection();
+    if workbench.stage.turns && !workbench.panel.is_of_land() {
+        let turn_rad = workbench.stage.turn_rad + time.delta_secs() / TURN_S * std::f32::consts::TAU;
+        workbench.stage.turn_rad = turn_rad % std::f32::consts::TAU;
     }
-    let stage = &mut workbench.bypass_change_detection().stage;
-    if stage.turns {
-        stage.turn_rad = (stage.turn_rad + time.delta_secs() / TURN_S * std::f32::consts::TAU) % std::f32::consts::TAU;
-    }
-    if wants.wants_any_pointer_input() {
-        return;
-    }
-    if buttons.is_some_and(|buttons| buttons.any_pressed([MouseButton::Left, MouseButton::Right, MouseButton::Middle]))
-    {
-        let delta = motion.map_or(Vec2::ZERO, |motion| motion.delta);
-        stage.turn_rad -= DRAG_RAD * delta.x;
-        stage.rise_rad = (stage.rise_rad + DRAG_RAD * delta.y).clamp(RISES_RAD[0], RISES_RAD[1]);
-    }
-    let steps = scroll.map_or(0.0, |scroll| scroll.delta.y.clamp(-4.0, 4.0));
-    stage.distance = (stage.distance * (1.0 - WHEEL * steps)).clamp(DISTANCES[0], DISTANCES[1]);
 }
 
 /// A species with another number of variants: no more are grown than are shown.

@@ -3,21 +3,24 @@
 use std::path::{Path, PathBuf};
 
 use crate::{
+    background::WorkerPanic,
     editor::{
         costs::Costs,
         document::Document,
         fields::Section,
-        file_session::FileSession,
+        file_session::{FileSession, Message},
         ground_desk::{GroundDesk, GroundKind},
         ground_variogram::GroundVariogram,
         land_pose::LandPose,
+        live_settings::LiveSettings,
         plan_element::Element,
         quadrat_histogram::QuadratHistogram,
         scene_view::SceneView,
         session::Session,
         stage::Stage,
+        steps::Steps,
         tip_motion::TipMotion,
-        ui::{LevelTables, Panel, TreeFacts, UiState, dialogs::Dialog, wind_table},
+        ui::{LevelSettings, LevelTables, Panel, TreeFacts, UiState, dialogs::Dialog, wind_table},
         wind_measures::WindMeasures,
         woods::Woods,
     },
@@ -56,12 +59,23 @@ pub struct Workbench {
     pub(super) tree: TreeFacts,
     pub(super) legend: Vec<(String, [f32; 3])>,
     pub(super) measures: Option<WindMeasures>,
-    pub(super) tip: Option<TipMotion>,
+    /// What a tree is called, and how its top moves.
+    pub(super) tip: Option<(String, TipMotion)>,
+    /// Where the pointer is in the picture, points.
+    pub(super) pointer: Option<Vec2>,
+    /// The tree that it pointed at last, while the panel of the wind was open.
+    pub(super) pointed_tree: Option<Entity>,
     pub(super) costs: Costs,
     pub(super) is_cancelled: bool,
     pub(super) is_quitting: bool,
+    /// Where the tree is to be exported to.
+    pub(super) export_to: Option<PathBuf>,
+    pub(super) is_exporting: bool,
+    pub(super) is_export_cancelled: bool,
     /// What the panels leave free, in points; and how many pixels a point has.
     pub(super) picture: Option<(Rect, f32)>,
+    pub(super) wind: LiveSettings<Wind>,
+    pub(super) levels: LiveSettings<LevelSettings>,
     pub(super) wind_table: Section,
     pub(super) level_tables: LevelTables,
 }
@@ -117,10 +131,17 @@ impl Workbench {
             legend: Vec::new(),
             measures: None,
             tip: None,
+            pointer: None,
+            pointed_tree: None,
             costs: Costs::default(),
             is_cancelled: false,
             is_quitting: false,
+            export_to: None,
+            is_exporting: false,
+            is_export_cancelled: false,
             picture: None,
+            wind: LiveSettings::new(Wind::default()),
+            levels: LiveSettings::new(LevelSettings::default()),
             wind_table: wind_table(&Wind::default()),
             level_tables: LevelTables::new(&LevelOfDetail::default(), &ForestSettings::default()),
         }
@@ -194,10 +215,24 @@ impl Workbench {
 
     /// Undoes everything.
     pub fn undo_all(&mut self) {
-        for (_, files) in self.files() {
-            while files.undo_step().is_some() {
-                files.undo();
+        fn undo_all(steps: &mut dyn Steps) {
+            while steps.undo_step().is_some() {
+                steps.undo();
             }
+        }
+        self.files().into_iter().for_each(|(_, files)| undo_all(files));
+        undo_all(&mut self.wind);
+        undo_all(&mut self.levels);
+    }
+
+    /// Tells once that work in the background has failed, and what stays.
+    pub(super) fn tell_panic(&mut self, panic: &WorkerPanic, stays: &str) {
+        error!("workbench: {panic}; {stays}");
+        let message = Some(Message::Failed(format!("{panic}; {stays}")));
+        match self.panel {
+            Panel::Woods => self.woods.session.message = message,
+            Panel::Ground => self.ground.tell(message),
+            Panel::Species | Panel::Wind | Panel::Levels => self.session.message = message,
         }
     }
 

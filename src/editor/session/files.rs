@@ -7,7 +7,32 @@ use crate::editor::{
     document::Document,
     document_file::OnDisk,
     file_session::{FileSession, Intent, Message, Question},
+    steps::Steps,
 };
+
+impl<T: Document> Steps for Session<T> {
+    fn undo_step(&self) -> Option<&str> {
+        self.history.undo_step()
+    }
+
+    fn redo_step(&self) -> Option<&str> {
+        self.history.redo_step()
+    }
+
+    fn undo(&mut self) {
+        self.history.undo();
+        self.refresh();
+    }
+
+    fn redo(&mut self) {
+        self.history.redo();
+        self.refresh();
+    }
+
+    fn end_gesture(&mut self) {
+        self.history.end_gesture();
+    }
+}
 
 impl<T: Document> FileSession for Session<T> {
     fn path(&self) -> &Path {
@@ -44,28 +69,6 @@ impl<T: Document> FileSession for Session<T> {
 
     fn dismiss_question(&mut self) {
         self.question = None;
-    }
-
-    fn undo_step(&self) -> Option<&str> {
-        self.history.undo_step()
-    }
-
-    fn redo_step(&self) -> Option<&str> {
-        self.history.redo_step()
-    }
-
-    fn undo(&mut self) {
-        self.history.undo();
-        self.refresh();
-    }
-
-    fn redo(&mut self) {
-        self.history.redo();
-        self.refresh();
-    }
-
-    fn end_gesture(&mut self) {
-        self.history.end_gesture();
     }
 
     fn save(&mut self) {

@@ -4,6 +4,7 @@ use crate::{
         fields::{all_fields, number, set_number},
         file_session::{FileSession, Intent},
         randomiser::Randomiser,
+        steps::Steps,
     },
     tree::{Growth, Species},
 };

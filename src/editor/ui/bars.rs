@@ -14,6 +14,7 @@ use crate::{
         diagram::View,
         file_session::Message,
         land_pose::LandPose,
+        live_settings::LiveSettings,
         stage::{Arrangement, Stage},
     },
     tree::Season,
@@ -91,7 +92,14 @@ pub fn top_bar(ui: &mut Ui, panel: &mut Panel, dialog: &mut Option<Dialog>) {
 }
 
 /// The bar under the picture: views and rows, age, season and wind.
-pub fn stage_bar(ui: &mut Ui, stage: &mut Stage, season: &mut Season, wind: &mut Wind, mature_years: f32) {
+pub fn stage_bar(
+    ui: &mut Ui,
+    panel: Panel,
+    stage: &mut Stage,
+    season: &mut Season,
+    wind: &mut LiveSettings<Wind>,
+    mature_years: f32,
+) {
     ui.horizontal(|ui| {
         ui.set_height(ROW);
         for (view, name, hint) in View::ALL {
@@ -111,6 +119,10 @@ pub fn stage_bar(ui: &mut Ui, stage: &mut Stage, season: &mut Season, wind: &mut
         ui.checkbox(&mut stage.compares, "Beside the saved")
             .on_hover_text("The tree as it is in its file stands to the left");
         ui.checkbox(&mut stage.turns, "Turn").on_hover_text("Ctrl+T");
+        if panel == Panel::Species {
+            ui.checkbox(&mut stage.shows_envelope, "Envelope")
+                .on_hover_text("The outline that branches do not leave: drag its base, its top and its side");
+        }
     });
     ui.horizontal(|ui| {
         ui.set_height(ROW);
@@ -121,7 +133,7 @@ pub fn stage_bar(ui: &mut Ui, stage: &mut Stage, season: &mut Season, wind: &mut
 }
 
 /// The bar under a picture of a wood or of ground: from where it is seen, season and wind.
-pub fn land_bar(ui: &mut Ui, pose: &mut LandPose, season: &mut Season, wind: &mut Wind) {
+pub fn land_bar(ui: &mut Ui, pose: &mut LandPose, season: &mut Season, wind: &mut LiveSettings<Wind>) {
     ui.horizontal(|ui| {
         ui.set_height(ROW);
         if ui.button("From above").on_hover_text("North is up").clicked() {
@@ -166,7 +178,7 @@ fn age(ui: &mut Ui, width: f32, stage: &mut Stage, mature_years: f32) {
     }
 }
 
-fn season_and_wind(ui: &mut Ui, width: f32, season: &mut Season, wind: &mut Wind) {
+fn season_and_wind(ui: &mut Ui, width: f32, season: &mut Season, wind: &mut LiveSettings<Wind>) {
     part(ui, width, "Season", &mut |ui, named| {
         let mut year = season.year;
         ui.add(bare(Slider::new(&mut year, 0.0..=1.0))).labelled_by(named);
@@ -176,12 +188,12 @@ fn season_and_wind(ui: &mut Ui, width: f32, season: &mut Season, wind: &mut Wind
         ui.add_sized(vec2(64.0, ROW - 4.0), Label::new(month(season.year)));
     });
     part(ui, width, "Wind", &mut |ui, named| {
-        let mut speed = wind.speed;
+        let mut speed = wind.value().speed;
         ui.add(bare(Slider::new(&mut speed, 0.0..=30.0).step_by(0.5))).labelled_by(named);
         let drag = DragValue::new(&mut speed).range(0.0..=75.0).suffix(" m/s").max_decimals(1);
         ui.add_sized(vec2(64.0, ROW - 4.0), drag).labelled_by(named);
-        if speed != wind.speed {
-            wind.speed = speed;
+        if speed != wind.value().speed {
+            wind.change(Wind { speed, ..wind.value().clone() }, "Speed");
         }
     });
 }
@@ -211,14 +223,23 @@ fn month(year: f32) -> &'static str {
     MONTHS[((day / 365.0 * 12.0) as usize).min(11)]
 }
 
-/// The bar at the bottom: what was done last, and what is shown of a tree. Returns whether the growing is to be cancelled.
-pub fn status_bar(ui: &mut Ui, message: Option<&Message>, facts: Option<&TreeFacts>) -> bool {
+/// Work in the background that is not wanted any more.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cancelled {
+    /// The tree that is being grown.
+    pub growing: bool,
+    pub exporting: bool,
+}
+
+/// The bar at the bottom: what was done last, what is shown of a tree, and what is being done.
+pub fn status_bar(ui: &mut Ui, message: Option<&Message>, facts: Option<&TreeFacts>, is_exporting: bool) -> Cancelled {
     let palette = palette(ui.visuals());
-    let mut is_cancelled = false;
+    let mut cancelled = Cancelled::default();
     ui.horizontal(|ui| {
         ui.set_height(20.0);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            is_cancelled = facts.is_some_and(|facts| tree_facts(ui, facts));
+            cancelled.growing = facts.is_some_and(|facts| tree_facts(ui, facts));
+            cancelled.exporting = is_exporting && under_way(ui, "Exporting", "Nothing is written then");
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let (text, colour) = match message {
                     Some(Message::Done(text)) => (text.as_str(), palette.good),
@@ -230,18 +251,20 @@ pub fn status_bar(ui: &mut Ui, message: Option<&Message>, facts: Option<&TreeFac
             });
         });
     });
-    is_cancelled
+    cancelled
 }
 
 fn tree_facts(ui: &mut Ui, facts: &TreeFacts) -> bool {
     let time = facts.grown_in_ms.map_or_else(String::new, |ms| format!("  ·  grown in {ms:.0} ms"));
     let counts = format!("{:.1} m  ·  {} beams  ·  {} triangles{time}", facts.height_m, facts.beams, facts.triangles);
     ui.label(RichText::new(counts).weak());
-    if !facts.is_growing {
-        return false;
-    }
-    let is_cancelled = ui.small_button("Cancel").on_hover_text("Go back to the tree that is shown").clicked();
-    ui.label("Growing");
+    facts.is_growing && under_way(ui, "Growing", "Go back to the tree that is shown")
+}
+
+/// Work that goes on. Returns whether it is to be cancelled.
+fn under_way(ui: &mut Ui, what: &str, cancel: &str) -> bool {
+    let is_cancelled = ui.small_button("Cancel").on_hover_text(cancel).clicked();
+    ui.label(what);
     ui.spinner();
     is_cancelled
 }

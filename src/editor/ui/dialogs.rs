@@ -14,9 +14,14 @@ pub enum Dialog {
     Open(PathField),
     /// A file to save to.
     SaveAs(PathField),
+    /// A file to export the tree to.
+    Export(PathField),
     /// The list of shortcuts.
     Shortcuts,
 }
+
+/// How files of exported trees end.
+const EXPORTED: &str = ".glb";
 
 /// A path that is typed, and the files of its folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,13 +31,12 @@ pub struct PathField {
 }
 
 impl PathField {
-    fn new(path: &Path) -> Self {
+    fn new(path: &Path, extension: &str) -> Self {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let entries = std::fs::read_dir(folder).into_iter().flatten();
-        let extension = extension_of(path);
         let is_of_kind = |path: &PathBuf| {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            name.ends_with(&extension) && !name.starts_with('.')
+            name.ends_with(extension) && !name.starts_with('.')
         };
         let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_of_kind).collect();
         files.sort();
@@ -68,21 +72,39 @@ impl PathField {
 impl Dialog {
     /// Asks for a file to open, beginning with one.
     pub fn open(path: &Path) -> Self {
-        Self::Open(PathField::new(path))
+        Self::Open(PathField::new(path, &extension_of(path)))
     }
 
     /// Asks where to save, beginning with a file.
     pub fn save_as(path: &Path) -> Self {
-        Self::SaveAs(PathField::new(path))
+        Self::SaveAs(PathField::new(path, &extension_of(path)))
+    }
+
+    /// Asks where to export to, beginning with the name of a species' file.
+    pub fn export(path: &Path) -> Self {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let name = name.split('.').next().unwrap_or_default();
+        Self::Export(PathField::new(&path.with_file_name(format!("{name}{EXPORTED}")), EXPORTED))
     }
 }
 
-/// Shows the dialog that is open, and the session's question. Returns whether the program is to end.
-pub fn show(context: &Context, session: &mut dyn FileSession, dialog: &mut Option<Dialog>) -> bool {
+/// What was answered.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Answer {
+    /// Whether the program is to end.
+    pub is_quitting: bool,
+    /// Where the tree is to be exported to.
+    pub export_to: Option<PathBuf>,
+}
+
+/// Shows the dialog that is open, and the session's question.
+pub fn show(context: &Context, session: &mut dyn FileSession, dialog: &mut Option<Dialog>) -> Answer {
+    let mut answer = Answer::default();
     if let Some(question) = session.question().cloned() {
-        return ask(context, session, &question);
+        answer.is_quitting = ask(context, session, &question);
+        return answer;
     }
-    let Some(open) = dialog else { return false };
+    let Some(open) = dialog else { return answer };
     let mut is_done = false;
     let modal = Modal::new(Id::new("windwood dialog")).show(context, |ui| {
         ui.set_width(480.0);
@@ -100,13 +122,19 @@ pub fn show(context: &Context, session: &mut dyn FileSession, dialog: &mut Optio
                     session.save_to(Some(&path));
                 }
             }
+            Dialog::Export(field) => {
+                ui.weak("The tree in its season, and a loop of its sway in the wind in force.");
+                if file_dialog(ui, ("Export as GLB", "Export"), field, EXPORTED, &mut is_done) {
+                    answer.export_to = Some(PathBuf::from(with_extension(&field.path, EXPORTED)));
+                }
+            }
             Dialog::Shortcuts => is_done = shortcuts(ui),
         }
     });
     if is_done || modal.should_close() {
         *dialog = None;
     }
-    false
+    answer
 }
 
 /// Files without the ending of their kind would not be loaded.
@@ -153,6 +181,8 @@ fn shortcuts(ui: &mut Ui) -> bool {
             ("Tab, arrows", "From control to control; change a slider"),
             ("Drag, wheel", "Turn the view; nearer and farther"),
             ("Shift+drag", "Shift the view of a wood or of ground"),
+            ("Arrows, Page Up, Down", "The same, once Tab has reached the picture; Shift+arrows shift"),
+            ("Space", "There: put the tool down in the middle, and lift it"),
         ] {
             ui.label(RichText::new(keys).monospace());
             ui.label(what);
@@ -245,9 +275,15 @@ mod tests {
 
     #[test]
     fn files_of_the_folder_are_offered_in_order() {
-        let field = PathField::new(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/species/oak.species.ron")));
+        let of = |path: &str| match Dialog::open(Path::new(path)) {
+            Dialog::Open(field) => field,
+            other => panic!("{other:?}"),
+        };
+        let field = of(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/species/oak.species.ron"));
         assert!(field.files.len() > 20 && field.files.is_sorted());
-        assert!(PathField::new(Path::new("nowhere/x.species.ron")).files.is_empty());
+        assert!(of("nowhere/x.species.ron").files.is_empty());
+        let Dialog::Export(field) = Dialog::export(Path::new("a/elm.species.ron")) else { panic!("an export") };
+        assert_eq!(field.path, "a/elm.glb");
     }
 
     #[test]

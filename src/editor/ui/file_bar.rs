@@ -3,10 +3,20 @@
 use bevy_egui::egui::{Button, Frame, Ui};
 
 use super::{dialogs::Dialog, theme::palette};
-use crate::editor::{document_file::OnDisk, file_session::FileSession};
+use crate::editor::{document_file::OnDisk, file_session::FileSession, steps::Steps};
 
 /// The name of the file, and buttons to open and save it.
 pub fn file_buttons(ui: &mut Ui, session: &mut dyn FileSession, dialog: &mut Option<Dialog>) {
+    file_buttons_with(ui, session, dialog, |_, _| {});
+}
+
+/// The same, with more buttons in the row.
+pub fn file_buttons_with(
+    ui: &mut Ui,
+    session: &mut dyn FileSession,
+    dialog: &mut Option<Dialog>,
+    add: impl FnOnce(&mut Ui, &mut Option<Dialog>),
+) {
     let name = session.path().file_name().unwrap_or_default().to_string_lossy().into_owned();
     ui.horizontal(|ui| {
         let title = if session.is_changed() { format!("{name} •") } else { name };
@@ -23,22 +33,23 @@ pub fn file_buttons(ui: &mut Ui, session: &mut dyn FileSession, dialog: &mut Opt
         if ui.button("Save as…").on_hover_text("Ctrl+Shift+S").clicked() {
             *dialog = Some(Dialog::save_as(session.path()));
         }
+        add(ui, dialog);
     });
 }
 
 /// Buttons to go back and forth, in a row with others.
-pub fn undo_buttons(ui: &mut Ui, session: &mut dyn FileSession) {
-    let undo = session.undo_step().map(|step| format!("Take back: {step} (Ctrl+Z)"));
-    let redo = session.redo_step().map(|step| format!("Do again: {step} (Ctrl+Shift+Z)"));
+pub fn undo_buttons(ui: &mut Ui, steps: &mut dyn Steps) {
+    let undo = steps.undo_step().map(|step| format!("Take back: {step} (Ctrl+Z)"));
+    let redo = steps.redo_step().map(|step| format!("Do again: {step} (Ctrl+Shift+Z)"));
     let button = |ui: &mut Ui, name: &str, hint: Option<String>| {
         let response = ui.add_enabled(hint.is_some(), Button::new(name));
         hint.map_or(response.clone(), |hint| response.on_hover_text(hint)).clicked()
     };
     if button(ui, "Undo", undo) {
-        session.undo();
+        steps.undo();
     }
     if button(ui, "Redo", redo) {
-        session.redo();
+        steps.redo();
     }
 }
 

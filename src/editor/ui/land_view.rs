@@ -5,11 +5,15 @@ use bevy_egui::egui::{
     Align2, Color32, FontId, Id, Painter, PointerButton, Pos2, Rect, Response, Sense, Shape, Stroke, Ui,
 };
 
-use super::theme::palette;
+use super::{
+    picture_keys::{PictureKeys, cross, middle},
+    theme::palette,
+};
 use crate::editor::{
     land_pose::LandPose,
     plan_element::{Element, disc},
     scene_view::SceneView,
+    stage::Stage,
     woods::{Tool, Woods},
 };
 
@@ -33,7 +37,13 @@ pub fn pointer(ui: &Ui, picture: Rect) -> Response {
 }
 
 /// Turns, shifts and approaches. `is_free` says whether the main button turns, too.
-pub fn move_view(ui: &Ui, response: &Response, pose: &mut LandPose, is_free: bool) {
+pub fn move_view(ui: &Ui, response: &Response, pose: &mut LandPose, keys: &PictureKeys, is_free: bool) {
+    if keys.is_shifted {
+        pose.shift(keys.drag, response.rect.height());
+    } else {
+        pose.turn(keys.drag);
+    }
+    pose.approach(keys.wheel);
     let drag = from_egui(response.drag_delta().to_pos2());
     let is_shifted = ui.input(|input| input.modifiers.shift);
     if response.dragged_by(PointerButton::Middle)
@@ -49,8 +59,22 @@ pub fn move_view(ui: &Ui, response: &Response, pose: &mut LandPose, is_free: boo
     }
 }
 
+/// Turns and approaches the trees of the turntable. `is_free` says whether the pointer turns.
+pub fn move_stage(ui: &Ui, response: &Response, stage: &mut Stage, keys: &PictureKeys, is_free: bool) {
+    let drag = if is_free { from_egui(response.drag_delta().to_pos2()) } else { Vec2::ZERO };
+    stage.turn(drag + keys.drag);
+    let wheel = if response.hovered() { ui.input(|input| input.smooth_scroll_delta.y) } else { 0.0 };
+    stage.approach(wheel + keys.wheel);
+}
+
 /// Lines, handles and the brush of a wood; and what the pointer does with them. Returns whether the main button is free for the view.
-pub fn wood_in_picture(ui: &Ui, response: &Response, view: &SceneView, woods: &mut Woods) -> bool {
+pub fn wood_in_picture(ui: &Ui, response: &Response, view: &SceneView, keys: &PictureKeys, woods: &mut Woods) -> bool {
+    if keys.has_focus {
+        tool_by_keys(view, woods, middle(response), keys.is_space);
+        cross(ui, response);
+    } else if woods.is_held_by_keys {
+        woods.release();
+    }
     let pointed = response.interact_pointer_pos().or(response.hover_pos()).map(from_egui);
     let held = ui.input(|input| input.pointer.primary_down());
     if response.is_pointer_button_down_on()
@@ -59,6 +83,8 @@ pub fn wood_in_picture(ui: &Ui, response: &Response, view: &SceneView, woods: &m
         && ui.input(|input| input.pointer.primary_pressed())
     {
         press(view, woods, pointed);
+    } else if woods.is_held_by_keys {
+        // The pointer has no part in it.
     } else if woods.is_held() && held {
         if let Some(place) = pointed.and_then(|at| view.place(at)) {
             woods.drag(place);
@@ -72,6 +98,19 @@ pub fn wood_in_picture(ui: &Ui, response: &Response, view: &SceneView, woods: &m
         draw_brush(&painter, view, woods, pointed);
     }
     woods.tool == Tool::Move && !woods.is_held()
+}
+
+/// Space puts the tool down in the middle of the picture, and lifts it again; meanwhile it goes where the view is moved to.
+fn tool_by_keys(view: &SceneView, woods: &mut Woods, middle: Vec2, is_space: bool) {
+    match (is_space, woods.is_held()) {
+        (true, true) => woods.release(),
+        (true, false) => {
+            press(view, woods, Some(middle));
+            woods.is_held_by_keys = woods.is_held();
+        }
+        (false, _) if woods.is_held_by_keys => view.place(middle).into_iter().for_each(|place| woods.drag(place)),
+        (false, _) => {}
+    }
 }
 
 fn press(view: &SceneView, woods: &mut Woods, pointed: Option<Vec2>) {

@@ -1,18 +1,19 @@
 //! The panel of levels of detail and of what everything costs.
 
-use bevy::reflect::Reflect;
 use bevy_egui::egui::{Align, Grid, Label, Layout, RichText, ScrollArea, Ui, vec2};
 
 use super::{
+    file_bar::undo_buttons,
+    live_rows::live_rows,
     plots::{Curve, PlotForm, plot},
-    rows::{Action, Rows},
     theme::palette,
 };
 use crate::{
     editor::{
-        costs::Costs,
+        costs::{Costs, SpeciesCost},
         field_table::fields_of,
-        fields::{Field, Section, copy_at, is_same_at},
+        fields::Section,
+        live_settings::LiveSettings,
     },
     forest::ForestSettings,
     render::LevelOfDetail,
@@ -20,6 +21,8 @@ use crate::{
 
 /// The systems that are told by name.
 const DEAREST: usize = 12;
+/// The species that are.
+const DEAREST_SPECIES: usize = 5;
 
 /// The tables of what this panel edits.
 pub struct LevelTables {
@@ -33,51 +36,46 @@ impl LevelTables {
     }
 }
 
-/// Draws the settings. `forest` are those of the forest that there is.
+/// What this panel edits.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LevelSettings {
+    pub levels: LevelOfDetail,
+    /// Of the forest that there is.
+    pub forest: Option<ForestSettings>,
+}
+
+/// Draws the settings.
 pub fn levels_panel(
     ui: &mut Ui,
-    levels: &mut LevelOfDetail,
-    forest: Option<&mut ForestSettings>,
+    settings: &mut LiveSettings<LevelSettings>,
     is_frozen: &mut bool,
     tables: &LevelTables,
 ) {
     ui.heading("Levels of detail");
+    ui.horizontal(|ui| undo_buttons(ui, settings));
     ui.add_space(4.0);
     ui.checkbox(is_frozen, "Freeze, and fly out to look").on_hover_text(
         "Levels, streaming and culling stay as they are from here, while the camera goes elsewhere to look at them",
     );
     ui.add_space(4.0);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        let error = levels.validate().err();
-        if let Some(error) = error {
+        let now = settings.value().clone();
+        if let Err(error) = now.levels.validate() {
             ui.colored_label(palette(ui.visuals()).bad, format!("{error}. The last good settings stay."));
         }
-        rows_of(ui, levels, &LevelOfDetail::default(), &tables.levels);
+        if let Some((levels, step)) = live_rows(ui, &now.levels, &LevelOfDetail::default(), &tables.levels) {
+            settings.change(LevelSettings { levels, ..now.clone() }, &step);
+        }
         ui.add_space(8.0);
         ui.heading("Forest");
-        match forest {
-            Some(forest) => rows_of(ui, forest, &ForestSettings::default(), &tables.forest),
-            None => {
-                ui.weak("There is no forest here.");
-            }
+        let Some(forest) = &now.forest else {
+            ui.weak("There is no forest here.");
+            return;
+        };
+        if let Some((forest, step)) = live_rows(ui, forest, &ForestSettings::default(), &tables.forest) {
+            settings.change(LevelSettings { forest: Some(forest), ..now }, &step);
         }
     });
-}
-
-/// Rows of settings whose way back is the default.
-fn rows_of<T: Reflect + Clone + PartialEq>(ui: &mut Ui, settings: &mut T, default: &T, table: &Section) {
-    let now = settings.clone();
-    let is_changed = |field: &Field| !is_same_at(&now, default, &field.path);
-    let mut draft = settings.clone();
-    let mut rows = Rows::new(ui, &mut draft, &is_changed);
-    rows.section(ui, table);
-    for action in std::mem::take(&mut rows.actions) {
-        match action {
-            Action::Changed(_) => settings.clone_from(&draft),
-            Action::Reset(field) => drop(copy_at(settings, default, &field.path)),
-            Action::Lengthen(_) | Action::Shorten(_) | Action::Variant(..) => {}
-        }
-    }
 }
 
 /// Draws counts, times and bytes.
@@ -105,6 +103,13 @@ pub fn costs_panel(ui: &mut Ui, costs: &Costs) {
     ];
     table(ui, "counts", &rows);
     ui.add_space(8.0);
+    ui.label(RichText::new("Dearest species").strong())
+        .on_hover_text("Of the trees that are entities, by triangles of the full level");
+    let species = costs.species.iter().take(DEAREST_SPECIES);
+    let told = |cost: &SpeciesCost| format!("{} · {} k triangles", cost.trees, cost.triangles.div_ceil(1000));
+    let species: Vec<(&str, String)> = species.map(|cost| (cost.name.as_str(), told(cost))).collect();
+    table(ui, "species", &species);
+    ui.add_space(8.0);
     ui.label(RichText::new("Our dearest systems").strong());
     let dearest = costs.systems.iter().take(DEAREST);
     let dearest: Vec<(&str, String)> = dearest.map(|(name, us)| (*name, format!("{us:.0} µs"))).collect();
@@ -116,11 +121,11 @@ fn table(ui: &mut Ui, id: &str, rows: &[(&str, String)]) {
     let width = ui.available_width() - 12.0;
     Grid::new(id).num_columns(2).striped(true).spacing(vec2(8.0, 4.0)).min_row_height(18.0).show(ui, |ui| {
         for (name, value) in rows {
-            ui.allocate_ui_with_layout(vec2(width - 90.0, 18.0), Layout::left_to_right(Align::Center), |ui| {
-                ui.set_width(width - 90.0);
+            ui.allocate_ui_with_layout(vec2(width - 180.0, 18.0), Layout::left_to_right(Align::Center), |ui| {
+                ui.set_width(width - 180.0);
                 ui.add(Label::new(*name).truncate());
             });
-            ui.allocate_ui_with_layout(vec2(82.0, 18.0), Layout::right_to_left(Align::Center), |ui| {
+            ui.allocate_ui_with_layout(vec2(172.0, 18.0), Layout::right_to_left(Align::Center), |ui| {
                 ui.label(RichText::new(value).monospace());
             });
             ui.end_row();

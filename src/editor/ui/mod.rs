@@ -3,11 +3,14 @@
 mod bars;
 mod controls;
 pub mod dialogs;
+mod envelope_view;
 mod file_bar;
 mod ground_panel;
 mod ground_plots;
 mod land_view;
 mod levels_panel;
+mod live_rows;
+mod picture_keys;
 mod plots;
 mod rows;
 mod session_rows;
@@ -21,19 +24,23 @@ mod wind_panel;
 mod woods_panel;
 mod woods_plots;
 
-pub use bars::{Panel, TreeFacts};
+pub use bars::{Cancelled, Panel, TreeFacts};
 pub use ground_plots::GroundFacts;
-pub use levels_panel::LevelTables;
+pub use levels_panel::{LevelSettings, LevelTables};
 pub use wind_panel::{WindFacts, wind_table};
 pub use woods_plots::WoodsFacts;
 
+use std::path::PathBuf;
+
 use self::{
     bars::{land_bar, stage_bar, status_bar, top_bar},
-    dialogs::Dialog,
+    dialogs::{Answer, Dialog},
+    envelope_view::envelope_in_picture,
     ground_panel::ground_panel,
     ground_plots::ground_plots,
-    land_view::{empty_picture, move_view, pointer, wood_in_picture},
+    land_view::{empty_picture, move_stage, move_view, pointer, wood_in_picture},
     levels_panel::{costs_panel, levels_panel},
+    picture_keys::picture_keys,
     shortcuts::{Command, pressed},
     species_panel::species_panel,
     spline_view::spline_in_picture,
@@ -44,23 +51,24 @@ use self::{
 };
 use super::{
     costs::Costs,
+    envelope_handles::EnvelopeHandle,
     fields::Section,
     file_session::FileSession,
     ground_desk::{GroundDesk, GroundKind},
     land_pose::LandPose,
+    live_settings::LiveSettings,
     randomiser::Randomiser,
     scene_view::SceneView,
     session::Session,
     stage::Stage,
+    steps::Steps,
     woods::Woods,
 };
 use crate::{
-    forest::ForestSettings,
-    render::LevelOfDetail,
     tree::{Season, Species},
     wind::Wind,
 };
-use bevy_egui::egui::{Align2, Area, Color32, Frame, Id, Margin, Panel as EguiPanel, Rect, RichText, Ui, vec2};
+use bevy_egui::egui::{Align2, Area, Color32, Frame, Id, Margin, Panel as EguiPanel, Pos2, Rect, RichText, Ui, vec2};
 
 /// Width of the panel with plots, points.
 const PLOTS_WIDTH: f32 = 400.0;
@@ -72,6 +80,8 @@ pub struct UiState {
     pub dialog: Option<Dialog>,
     pub filter: String,
     pub randomiser: Randomiser,
+    /// What the pointer holds of the envelope.
+    envelope: Option<EnvelopeHandle>,
     has_theme: bool,
 }
 
@@ -80,7 +90,7 @@ pub struct Subjects<'a> {
     pub session: &'a mut Session<Species>,
     pub stage: &'a mut Stage,
     pub season: &'a mut Season,
-    pub wind: &'a mut Wind,
+    pub wind: &'a mut LiveSettings<Wind>,
     pub wind_table: &'a Section,
     pub wind_facts: WindFacts<'a>,
     pub woods: &'a mut Woods,
@@ -91,12 +101,13 @@ pub struct Subjects<'a> {
     pub pose: &'a mut LandPose,
     /// The picture of it, if there is one.
     pub view: Option<&'a SceneView>,
-    pub levels: &'a mut LevelOfDetail,
-    pub forest: Option<&'a mut ForestSettings>,
+    pub levels: &'a mut LiveSettings<LevelSettings>,
     pub level_tables: &'a LevelTables,
     pub is_frozen: &'a mut bool,
     pub costs: &'a Costs,
     pub tree: &'a TreeFacts,
+    /// Whether a tree is being exported.
+    pub is_exporting: bool,
     /// What the colours of the view mean.
     pub legend: &'a [(String, [f32; 3])],
     /// Whether the picture between the panels is a turntable; else it is a game's.
@@ -112,16 +123,34 @@ impl Subjects<'_> {
             Panel::Species | Panel::Wind | Panel::Levels => self.session,
         }
     }
+
+    /// What undoing acts on while a panel is open.
+    fn steps(&mut self, panel: Panel) -> &mut dyn Steps {
+        match panel {
+            Panel::Wind => self.wind,
+            Panel::Levels => self.levels,
+            Panel::Species => self.session,
+            Panel::Woods => &mut self.woods.session,
+            Panel::Ground => match self.ground.kind {
+                GroundKind::Random | GroundKind::Map => &mut self.ground.random,
+                GroundKind::Spline => &mut self.ground.spline,
+            },
+        }
+    }
 }
 
 /// What came of drawing the panels.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Drawn {
     /// What the panels leave free, points.
     pub picture: Rect,
+    /// Where the pointer is, if it is there.
+    pub pointer: Option<Pos2>,
     pub is_quitting: bool,
-    /// Whether the tree that is being grown is not wanted any more.
-    pub is_cancelled: bool,
+    /// What is not wanted any more.
+    pub cancelled: Cancelled,
+    /// Where the tree is to be exported to, if it was asked for.
+    pub export_to: Option<PathBuf>,
 }
 
 /// Draws all panels into a whole window.
@@ -138,7 +167,7 @@ pub fn draw(ui: &mut Ui, state: &mut UiState, mut subjects: Subjects) -> Drawn {
     let status = EguiPanel::bottom("windwood status").frame(bar(ui));
     let facts = (!state.panel.is_of_land()).then_some(subjects.tree);
     let message = subjects.files(state.panel).message().cloned();
-    let is_cancelled = status.show(ui, |ui| status_bar(ui, message.as_ref(), facts)).inner;
+    let cancelled = status.show(ui, |ui| status_bar(ui, message.as_ref(), facts, subjects.is_exporting)).inner;
     let fields = EguiPanel::left("windwood fields").frame(frame(ui)).resizable(false).exact_size(PANEL_WIDTH);
     fields.show(ui, |ui| left_panel(ui, state, &mut subjects));
     if state.panel != Panel::Species {
@@ -157,7 +186,7 @@ pub fn draw(ui: &mut Ui, state: &mut UiState, mut subjects: Subjects) -> Drawn {
             if state.panel.is_of_land() {
                 land_bar(ui, subjects.pose, subjects.season, subjects.wind);
             } else {
-                stage_bar(ui, subjects.stage, subjects.season, subjects.wind, mature_years);
+                stage_bar(ui, state.panel, subjects.stage, subjects.season, subjects.wind, mature_years);
             }
         });
     }
@@ -166,10 +195,22 @@ pub fn draw(ui: &mut Ui, state: &mut UiState, mut subjects: Subjects) -> Drawn {
         land(ui, state.panel, picture, &mut subjects);
     } else {
         legend(&context, picture, subjects.legend);
+        if subjects.has_turntable {
+            let response = pointer(ui, picture);
+            let keys = picture_keys(ui, &response, "Picture of the tree: arrows turn it, page keys bring it nearer");
+            let held = &mut state.envelope;
+            let view = subjects.view.filter(|_| state.panel == Panel::Species);
+            let is_free = view
+                .is_none_or(|view| envelope_in_picture(ui, &response, view, subjects.stage, held, subjects.session));
+            move_stage(ui, &response, subjects.stage, &keys, is_free);
+        }
     }
-    let is_quitting = dialogs::show(&context, subjects.files(state.panel), &mut state.dialog);
-    end_gesture(&context, subjects.files(state.panel));
-    Drawn { picture, is_quitting, is_cancelled }
+    let Answer { is_quitting, export_to } = dialogs::show(&context, subjects.files(state.panel), &mut state.dialog);
+    end_gesture(&context, subjects.steps(state.panel));
+    // The bar under the picture sets the wind, whatever panel is open.
+    end_gesture(&context, subjects.wind);
+    let pointer = context.pointer_latest_pos().filter(|at| picture.contains(*at) && state.dialog.is_none());
+    Drawn { picture, pointer, is_quitting, cancelled, export_to }
 }
 
 fn left_panel(ui: &mut Ui, state: &mut UiState, subjects: &mut Subjects) {
@@ -179,10 +220,7 @@ fn left_panel(ui: &mut Ui, state: &mut UiState, subjects: &mut Subjects) {
         Panel::Woods => woods_panel(ui, subjects.woods, subjects.pose, dialog),
         Panel::Ground => ground_panel(ui, subjects.ground, subjects.pose, dialog),
         Panel::Wind => wind_panel(ui, subjects.wind, subjects.stage, subjects.wind_table, subjects.wind_facts),
-        Panel::Levels => {
-            let forest = subjects.forest.as_deref_mut();
-            levels_panel(ui, subjects.levels, forest, subjects.is_frozen, subjects.level_tables);
-        }
+        Panel::Levels => levels_panel(ui, subjects.levels, subjects.is_frozen, subjects.level_tables),
     }
 }
 
@@ -193,15 +231,17 @@ fn land(ui: &Ui, panel: Panel, picture: Rect, subjects: &mut Subjects) {
         return;
     };
     let response = pointer(ui, picture);
+    let hint = "Picture of the land: arrows turn it, with Shift they shift it, Space puts the tool down";
+    let keys = picture_keys(ui, &response, hint);
     let is_free = match panel {
         Panel::Ground if subjects.ground.kind == GroundKind::Spline => {
-            spline_in_picture(ui, &response, view, subjects.ground)
+            spline_in_picture(ui, &response, view, &keys, subjects.ground)
         }
-        Panel::Woods => wood_in_picture(ui, &response, view, subjects.woods),
+        Panel::Woods => wood_in_picture(ui, &response, view, &keys, subjects.woods),
         _ => true,
     };
     if subjects.has_turntable {
-        move_view(ui, &response, subjects.pose, is_free);
+        move_view(ui, &response, subjects.pose, &keys, is_free);
     }
 }
 
@@ -217,8 +257,8 @@ fn obey(context: &bevy_egui::egui::Context, state: &mut UiState, subjects: &mut 
             Command::Open => state.dialog = Some(Dialog::open(files.path())),
             Command::SaveAs => state.dialog = Some(Dialog::save_as(files.path())),
             Command::Save => files.save(),
-            Command::Undo => files.undo(),
-            Command::Redo => files.redo(),
+            Command::Undo => subjects.steps(state.panel).undo(),
+            Command::Redo => subjects.steps(state.panel).redo(),
             Command::Randomise if !state.panel.is_of_land() => state.randomiser.randomise(subjects.session),
             Command::Turn => subjects.stage.turns ^= true,
             Command::Help => state.dialog = Some(Dialog::Shortcuts),
@@ -229,10 +269,10 @@ fn obey(context: &bevy_egui::egui::Context, state: &mut UiState, subjects: &mut 
 }
 
 /// A change ends when the pointer is released and no text is edited.
-fn end_gesture(context: &bevy_egui::egui::Context, session: &mut dyn FileSession) {
+fn end_gesture(context: &bevy_egui::egui::Context, steps: &mut dyn Steps) {
     let is_pressed = context.input(|input| input.pointer.any_down() || !input.keys_down.is_empty());
     if !is_pressed && !context.egui_wants_keyboard_input() {
-        session.end_gesture();
+        steps.end_gesture();
     }
 }
 

@@ -6,8 +6,8 @@ use super::rows::{Action, Rows};
 use crate::editor::{
     document::Document,
     fields::Field,
-    file_session::FileSession,
     session::Session,
+    steps::Steps,
     variants::{with_list, with_variant},
 };
 

@@ -4,7 +4,7 @@ use bevy_egui::egui::{RichText, ScrollArea, TextEdit, Ui};
 
 use super::{
     dialogs::Dialog,
-    file_bar::{file_buttons, undo_buttons, warnings},
+    file_bar::{file_buttons_with, undo_buttons, warnings},
     rows::Rows,
     session_rows::session_rows,
     starling,
@@ -12,6 +12,7 @@ use super::{
 use crate::{
     editor::{
         fields::{Row, Section, all_fields},
+        file_session::FileSession,
         randomiser::{NATURAL_SPREAD, Randomiser},
         session::Session,
     },
@@ -26,7 +27,13 @@ pub fn species_panel(
     filter: &mut String,
     dialog: &mut Option<Dialog>,
 ) {
-    file_buttons(ui, session, dialog);
+    let path = session.path().to_owned();
+    file_buttons_with(ui, session, dialog, |ui, dialog| {
+        let hint = "A GLB file for other programs: the tree with its sway";
+        if EXPORTS && ui.button("Export…").on_hover_text(hint).clicked() {
+            *dialog = Some(Dialog::export(&path));
+        }
+    });
     session_buttons(ui, session, randomiser);
     warnings(ui, session, "tree");
     ui.horizontal(|ui| {
@@ -39,6 +46,9 @@ pub fn species_panel(
     ui.separator();
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| fields(ui, session, filter));
 }
+
+/// Whether trees can be exported.
+const EXPORTS: bool = cfg!(feature = "export");
 
 fn session_buttons(ui: &mut Ui, session: &mut Session<Species>, randomiser: &mut Randomiser) {
     ui.horizontal(|ui| {

@@ -3,7 +3,10 @@
 use bevy::math::{Vec2, Vec3};
 use bevy_egui::egui::{Color32, Response, Stroke, Ui};
 
-use super::land_view::{from_egui, handle, label, to_egui};
+use super::{
+    land_view::{from_egui, handle, label, to_egui},
+    picture_keys::{PictureKeys, cross, middle},
+};
 use crate::editor::{
     ground_desk::GroundDesk,
     scene_view::SceneView,
@@ -19,10 +22,23 @@ const POINT: Color32 = Color32::from_rgb(255, 196, 60);
 const STEM: Color32 = Color32::from_rgba_premultiplied(120, 92, 28, 140);
 
 /// Points and their stems; and what the pointer does with them. Returns whether the main button is free for the view.
-pub fn spline_in_picture(ui: &Ui, response: &Response, view: &SceneView, ground: &mut GroundDesk) -> bool {
+pub fn spline_in_picture(
+    ui: &Ui,
+    response: &Response,
+    view: &SceneView,
+    keys: &PictureKeys,
+    ground: &mut GroundDesk,
+) -> bool {
     let pointed = response.interact_pointer_pos().or(response.hover_pos()).map(from_egui);
     let (is_down, is_pressed) = ui.input(|input| (input.pointer.primary_down(), input.pointer.primary_pressed()));
     let points = control_points(ground.spline.document());
+    if keys.has_focus {
+        cross(ui, response);
+    }
+    // Space chooses the point in the middle, whose height is a field of the panel then.
+    if keys.is_space {
+        ground.point = point_at(view, &points, middle(response)).or(ground.point);
+    }
     if is_pressed && response.is_pointer_button_down_on() {
         if let Some(point) = pointed.and_then(|at| point_at(view, &points, at)) {
             ground.take(point);

@@ -1,7 +1,10 @@
 //! The panels driven by events: what all of them have in common.
 
 mod desk;
+mod every_control;
 mod ground;
+mod keyboard;
+mod manners;
 mod species;
 mod woods;
 
@@ -100,12 +103,13 @@ fn the_wind_and_the_levels_are_set_by_their_panels() {
     desk.frame(Vec::new());
     let speed = desk.find(Role::Slider, "Speed");
     desk.click(speed.left_center() + vec2(0.5 * speed.width(), 0.0));
-    assert!((20.0..55.0).contains(&desk.wind.speed), "{}", desk.wind.speed);
+    let speed_m_s = desk.wind.value().speed;
+    assert!((20.0..55.0).contains(&speed_m_s), "{speed_m_s}");
     desk.key(Modifiers::COMMAND, Key::Num5);
     desk.frame(Vec::new());
     let fade = desk.find(Role::Slider, "Fade");
     desk.click(fade.left_center() + vec2(0.9 * fade.width(), 0.0));
-    assert!(desk.levels.fade > 0.2 && desk.levels.validate().is_ok());
+    assert!(desk.levels.value().levels.fade > 0.2 && desk.levels.value().levels.validate().is_ok());
     let freeze = desk.find(Role::CheckBox, "Freeze, and fly out to look").center();
     desk.click(freeze);
     assert!(desk.is_frozen);

@@ -3,14 +3,16 @@
 use bevy_egui::egui::{Align, Align2, Color32, FontId, Layout, RichText, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 
 use super::{
+    file_bar::undo_buttons,
+    live_rows::live_rows,
     plots::{Curve, PlotForm, plot, points},
-    rows::{Action, Rows},
     theme::{LABEL_WIDTH, palette},
 };
 use crate::{
     editor::{
         field_table::fields_of,
-        fields::{Field, Section, copy_at, is_same_at},
+        fields::Section,
+        live_settings::LiveSettings,
         stage::Stage,
         tip_motion::TipMotion,
         wind_measures::{COMPONENTS, Comparison, WindMeasures},
@@ -23,8 +25,8 @@ use crate::{
 #[derive(Clone, Copy, Default)]
 pub struct WindFacts<'a> {
     pub measures: Option<&'a WindMeasures>,
-    /// Of the tree that is looked at.
-    pub tip: Option<&'a TipMotion>,
+    /// Of the tree that was pointed at last, and what that is called.
+    pub tip: Option<(&'a str, &'a TipMotion)>,
     /// Whether another field is being built or fades in.
     pub is_changing: bool,
 }
@@ -42,28 +44,19 @@ pub fn wind_table(wind: &Wind) -> Section {
 }
 
 /// Draws the settings.
-pub fn wind_panel(ui: &mut Ui, wind: &mut Wind, stage: &mut Stage, table: &Section, facts: WindFacts) {
+pub fn wind_panel(ui: &mut Ui, wind: &mut LiveSettings<Wind>, stage: &mut Stage, table: &Section, facts: WindFacts) {
     ui.heading("Wind");
     ui.weak("A change is built in the background and fades in.");
+    ui.horizontal(|ui| undo_buttons(ui, wind));
     ui.add_space(4.0);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        let default = Wind::default();
-        let now = wind.clone();
-        let is_changed = |field: &Field| !is_same_at(&now, &default, &field.path);
-        let mut draft = wind.clone();
-        let mut rows = Rows::new(ui, &mut draft, &is_changed);
-        rows.section(ui, table);
-        for action in std::mem::take(&mut rows.actions) {
-            match action {
-                Action::Changed(_) => wind.clone_from(&draft),
-                Action::Reset(field) => drop(copy_at(wind, &default, &field.path)),
-                Action::Variant(..) | Action::Lengthen(_) | Action::Shorten(_) => {}
-            }
+        if let Some((changed, step)) = live_rows(ui, wind.value(), &Wind::default(), table) {
+            wind.change(changed, &step);
         }
         ui.add_space(6.0);
         ui.checkbox(&mut stage.shows_wind, "Arrows of the wind about the tree");
         ui.add_space(6.0);
-        compass(ui, wind);
+        compass(ui, wind.value());
         facts_table(ui, facts);
     });
 }
@@ -107,7 +100,8 @@ fn facts_table(ui: &mut Ui, facts: WindFacts) {
     };
     row(ui, &format!("Mean at {:.0} m", measures.height_m), format!("{:.1} m/s", measures.mean_m_s));
     row(ui, "Turbulence", format!("{:.0}% of the mean", 100.0 * measures.intensity));
-    if let Some(tip) = facts.tip {
+    if let Some((name, tip)) = facts.tip {
+        row(ui, "Tree", format!("{name}, {:.1} m", tip.height_m));
         for (name, hz) in &tip.own {
             row(ui, &format!("Frequency of the {name}"), format!("{hz:.2} Hz"));
         }
@@ -128,6 +122,11 @@ fn beside_target<'a>(name: &'a str, comparison: &Comparison, colour: Color32, ta
     ]
 }
 
+/// A plot of that title, axes and height.
+fn form<'a>(title: &'a str, axes: [&'a str; 2], height: f32) -> PlotForm<'a> {
+    PlotForm { title, axes, height, ..PlotForm::default() }
+}
+
 /// Draws what the wind is like.
 pub fn wind_plots(ui: &mut Ui, facts: WindFacts) {
     let palette = palette(ui.visuals());
@@ -139,9 +138,8 @@ pub fn wind_plots(ui: &mut Ui, facts: WindFacts) {
         });
         return;
     };
-    let rows = 4.0 + if facts.tip.is_some() { 1.0 } else { 0.0 };
+    let rows = if facts.tip.is_some() { 5.0 } else { 3.0 };
     let height = ((ui.available_height() - 26.0 * rows) / rows).clamp(104.0, 420.0);
-    let form = |title, axes| PlotForm { title, axes, height, ..PlotForm::default() };
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let series = Curve {
             name: "along the wind",
@@ -149,12 +147,13 @@ pub fn wind_plots(ui: &mut Ui, facts: WindFacts) {
             colour: palette.lines[0],
             is_target: false,
         };
-        plot(ui, &form("Speed at one place", ["s", "m/s"]), vec![series]);
+        plot(ui, &form("Speed at one place", ["s", "m/s"], height), vec![series]);
         let mut curves = Vec::new();
         for ((spectrum, (_, name)), colour) in measures.spectra.iter().zip(COMPONENTS).zip(palette.lines) {
             curves.extend(beside_target(name, spectrum, colour, palette.target));
         }
-        let spectra = PlotForm { is_logarithmic: true, ..form("Spectrum beside its target", ["Hz", "m²/s² per Hz"]) };
+        let spectra =
+            PlotForm { is_logarithmic: true, ..form("Spectrum beside its target", ["Hz", "m²/s² per Hz"], height) };
         plot(ui, &spectra, curves);
         let mut curves = Vec::new();
         let names: Vec<String> = measures.coherence.iter().map(|(lateral_m, _)| format!("{lateral_m:.0} m")).collect();
@@ -162,9 +161,12 @@ pub fn wind_plots(ui: &mut Ui, facts: WindFacts) {
             curves.extend(beside_target(name, coherence, colour, palette.target));
         }
         let coherence =
-            PlotForm { has_logarithmic_x: true, ..form("Coherence across the wind", ["Hz", "root coherence"]) };
+            PlotForm { has_logarithmic_x: true, ..form("Coherence across the wind", ["Hz", "root coherence"], height) };
         plot(ui, &coherence, curves);
-        let Some(tip) = facts.tip else { return };
+        let Some((name, tip)) = facts.tip else {
+            ui.weak("Point at a tree to see how it moves.");
+            return;
+        };
         let motion = vec![
             Curve {
                 name: "along",
@@ -179,13 +181,13 @@ pub fn wind_plots(ui: &mut Ui, facts: WindFacts) {
                 is_target: false,
             },
         ];
-        plot(ui, &form("Top of the tree", ["s", "m"]), motion);
+        plot(ui, &form(&format!("Top of the {name}"), ["s", "m"], height), motion);
         let spectrum =
             vec![Curve { name: "along", points: points(&tip.spectrum), colour: palette.lines[0], is_target: false }];
         let marked = PlotForm {
             is_logarithmic: true,
             marks: &tip.own,
-            ..form("Its spectrum, and its own frequencies", ["Hz", "m²/Hz"])
+            ..form("Its spectrum, and its own frequencies", ["Hz", "m²/Hz"], height)
         };
         plot(ui, &marked, spectrum);
     });

@@ -1,7 +1,7 @@
 //! The panel of a wood: its plan, the tools, and the fields of what is chosen.
 
 use bevy::math::Vec2;
-use bevy_egui::egui::{Button, CollapsingHeader, ComboBox, DragValue, ScrollArea, Ui, vec2};
+use bevy_egui::egui::{Button, CollapsingHeader, ComboBox, DragValue, ScrollArea, Ui, WidgetInfo, WidgetType, vec2};
 
 use super::{
     dialogs::Dialog,
@@ -111,24 +111,28 @@ fn corner(ui: &mut Ui, woods: &mut Woods) {
     let number = woods.corner.unwrap_or(0).min(handles.len().saturating_sub(1));
     let Some(place) = handles.get(number) else { return };
     let mut wanted = *place;
-    labelled(
-        ui,
-        &format!("Corner {} of {}", number + 1, handles.len()),
-        "x and z of the corner held last",
-        |ui, named| {
-            for (axis, value) in [("x ", &mut wanted.x), ("z ", &mut wanted.y)] {
-                let drag = DragValue::new(value).prefix(axis).suffix(" m").max_decimals(1).update_while_editing(false);
-                ui.add_sized(vec2(68.0, ROW - 4.0), drag).labelled_by(named.id);
-            }
-            if ui.small_button("+").on_hover_text("One more corner behind this one").clicked() {
-                woods.add_corner();
-            }
-            if ui.small_button("−").on_hover_text("Remove this corner").clicked() {
-                woods.corner = Some(number);
-                woods.remove_corner();
-            }
-        },
-    );
+    let mut chosen = number + 1;
+    labelled(ui, "Corner", "The one that was held last", |ui, named| {
+        let drag = DragValue::new(&mut chosen).range(1..=handles.len()).suffix(format!(" of {}", handles.len()));
+        ui.add_sized(vec2(84.0, ROW - 4.0), drag.speed(0.1)).labelled_by(named.id);
+        if ui.button("Split").on_hover_text("One more corner behind this one").clicked() {
+            woods.add_corner();
+        }
+        if ui.button("Drop").on_hover_text("Remove this corner").clicked() {
+            woods.corner = Some(number);
+            woods.remove_corner();
+        }
+    });
+    if chosen != number + 1 {
+        woods.corner = Some(chosen - 1);
+        return;
+    }
+    labelled(ui, "Its place", "x and z; drag it in the picture, or put the tool *Move* down on it", |ui, named| {
+        for (axis, value) in [("x ", &mut wanted.x), ("z ", &mut wanted.y)] {
+            let drag = DragValue::new(value).prefix(axis).suffix(" m").max_decimals(1).update_while_editing(false);
+            ui.add_sized(vec2(84.0, ROW - 4.0), drag).labelled_by(named.id);
+        }
+    });
     if wanted != *place
         && let Some(plan) = element.with_handle_at(woods.plan(), number, wanted)
     {

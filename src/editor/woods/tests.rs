@@ -1,4 +1,5 @@
 use super::*;
+use crate::editor::file_session::FileSession;
 use std::path::Path;
 
 const MIXED: &str = include_str!("../../../assets/forests/mixed.forest.ron");

@@ -109,7 +109,11 @@ impl Blade {
 
 fn place(leaf: &Leaf, margin: &[Vec2], veins: &[venation::Vein], point: Vec2) -> Place {
     let blade = outline::distance(margin, point);
-    let start = if leaf.shape == LeafShape::Palmate { outline::PALMATE_CENTRE } else { 0.05 };
+    let start = match leaf.shape {
+        LeafShape::Palmate => outline::PALMATE_CENTRE,
+        LeafShape::Digitate => outline::DIGITATE_CENTRE,
+        _ => 0.05,
+    };
     let stalk = venation::Vein { from: Vec2::new(start, 0.0), to: Vec2::new(-leaf.stalk, 0.0), radius: STALK_RADIUS };
     let on_stalk = if leaf.stalk > 0.0 { STALK_RADIUS * (1.0 - stalk.off(point) * 0.8) } else { f32::NEG_INFINITY };
     let nearest = veins.iter().map(|vein| vein.off(point)).fold(f32::INFINITY, f32::min);

@@ -8,7 +8,8 @@
 //! ```
 //!
 //! blunt at the base where a is small, drawn out at the tip where b is large. Lobes and teeth are waves along the margin;
-//! a palmate leaf is a polar curve about the end of its stalk. [`distance`] is the signed distance to the closed polygon.
+//! a palmate leaf is a polar curve about the end of its stalk, and a digitate one a simple leaf for each leaflet, turned
+//! about that end. [`distance`] is the signed distance to the closed polygon.
 
 use std::f32::consts::{PI, TAU};
 
@@ -21,6 +22,7 @@ impl LeafShape {
     fn exponents(self) -> (f32, f32) {
         match self {
             Self::Lobed => (0.95, 0.5),
+            Self::Digitate => (1.15, 0.42),
             Self::Ovate | Self::Palmate => (0.55, 0.72),
             Self::Triangular => (0.42, 1.05),
             Self::Lanceolate => (0.7, 1.0),
@@ -51,12 +53,23 @@ const LOBES: f32 = 4.5;
 pub(super) const PALMATE_LOBES: [(f32, f32, f32); 3] = [(0.0, 1.0, 0.52), (0.92, 0.86, 0.5), (1.95, 0.55, 0.55)];
 /// Where the stalk of a palmate leaf ends, as a share of the blade's length.
 pub(super) const PALMATE_CENTRE: f32 = 0.26;
-/// Points along one side of the margin.
+/// Angle and length of a horse chestnut's leaflets: angle from the tip, rad; length as a share.
+pub(super) const LEAFLETS: [(f32, f32); 7] =
+    [(-1.85, 0.5), (-1.22, 0.74), (-0.6, 0.93), (0.0, 1.0), (0.6, 0.93), (1.22, 0.74), (1.85, 0.5)];
+/// Where the stalk of a digitate leaf ends, as a share of the blade's length.
+pub(super) const DIGITATE_CENTRE: f32 = 0.2;
+/// Width of a leaflet as a share of its length: neighbours just do not touch.
+const LEAFLET_WIDTH: f32 = 0.37;
+/// Points along one side of the margin, and of a leaflet's.
 const POINTS: usize = 96;
+const LEAFLET_POINTS: usize = 24;
 
 /// The closed margin, from the base along one side to the tip and back along the other.
 #[must_use]
 pub fn outline(leaf: &Leaf) -> Vec<Vec2> {
+    if leaf.shape == LeafShape::Digitate {
+        return LEAFLETS.into_iter().flat_map(|leaflet| leaflet_margin(leaf, leaflet)).collect();
+    }
     let right: Vec<Vec2> = (0..=POINTS)
         .map(|point| {
             let u = point as f32 / POINTS as f32;
@@ -117,6 +130,22 @@ fn palmate_margin(leaf: &Leaf, u: f32) -> Vec2 {
         .fold(0.16, f32::max);
     let radius = (1.0 - PALMATE_CENTRE) * reach;
     Vec2::new(PALMATE_CENTRE + radius * angle.cos(), leaf.width * radius * angle.sin())
+}
+
+/// Round a leaflet, from the end of the stalk and back to it.
+fn leaflet_margin(leaf: &Leaf, (towards, length): (f32, f32)) -> impl Iterator<Item = Vec2> + use<> {
+    let leaflet = Leaf { width: LEAFLET_WIDTH, ..*leaf };
+    let (reach, wide) = ((1.0 - DIGITATE_CENTRE) * length, leaf.width);
+    let around = (0..2 * LEAFLET_POINTS).map(move |point| {
+        let u = 1.0 - (point as f32 / LEAFLET_POINTS as f32 - 1.0).abs();
+        let side = if point < LEAFLET_POINTS { -1.0 } else { 1.0 };
+        let margin = simple_margin(&leaflet, u);
+        Vec2::new(margin.x, side * margin.y)
+    });
+    around.map(move |at| {
+        let turned = at.rotate(Vec2::from_angle(towards)) * reach;
+        Vec2::new(DIGITATE_CENTRE + turned.x, wide * turned.y)
+    })
 }
 
 /// Distance to a closed polygon, positive inside (the crossing rule).

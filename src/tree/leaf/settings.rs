@@ -115,6 +115,8 @@ pub enum LeafShape {
     Lanceolate,
     /// Five lobes about the end of the stalk: a maple's.
     Palmate,
+    /// Seven leaflets about the end of the stalk, each widest beyond its middle: a horse chestnut's.
+    Digitate,
     /// A broad triangle with a straight base: a poplar's.
     Deltoid,
     /// Widest beyond the middle, blunt with a short tip: a hazel's or an alder's.

@@ -1,10 +1,10 @@
 //! The veins of a leaf: a midrib and pairs of side veins that leave it at the species' angle and bow towards the tip;
-//! in a palmate leaf one main vein for each lobe, with side veins of its own.
+//! in a palmate leaf one main vein for each lobe, in a digitate one for each leaflet, with side veins of its own.
 
 use bevy::math::Vec2;
 
 use super::{
-    outline::{PALMATE_CENTRE, PALMATE_LOBES},
+    outline::{DIGITATE_CENTRE, LEAFLETS, PALMATE_CENTRE, PALMATE_LOBES},
     settings::{Leaf, LeafShape},
 };
 
@@ -37,17 +37,35 @@ pub(super) fn veins(leaf: &Leaf) -> Vec<Vein> {
         return vec![Vein { from: Vec2::ZERO, to: Vec2::X, radius: 0.12 * leaf.width }];
     }
     let mut veins = vec![Vein { from: Vec2::ZERO, to: Vec2::new(0.98, 0.0), radius: MIDRIB_RADIUS }];
-    if leaf.shape == LeafShape::Palmate {
-        palmate_veins(leaf, &mut veins);
-    } else {
-        for pair in 0..leaf.vein_pairs {
-            let share = (pair as f32 + 0.5) / leaf.vein_pairs as f32;
-            let root = Vec2::new(0.04 + 0.82 * share, 0.0);
-            let length = 0.75 * leaf.width * (1.0 - 0.5 * share);
-            side_veins(root, Vec2::X, length, leaf.vein_angle_deg.to_radians(), &mut veins);
-        }
+    match leaf.shape {
+        LeafShape::Palmate => palmate_veins(leaf, &mut veins),
+        LeafShape::Digitate => digitate_veins(leaf, &mut veins),
+        _ => simple_veins(leaf, &mut veins),
     }
     veins
+}
+
+fn simple_veins(leaf: &Leaf, veins: &mut Vec<Vein>) {
+    for pair in 0..leaf.vein_pairs {
+        let share = (pair as f32 + 0.5) / leaf.vein_pairs as f32;
+        let root = Vec2::new(0.04 + 0.82 * share, 0.0);
+        let length = 0.75 * leaf.width * (1.0 - 0.5 * share);
+        side_veins(root, Vec2::X, length, leaf.vein_angle_deg.to_radians(), veins);
+    }
+}
+
+fn digitate_veins(leaf: &Leaf, veins: &mut Vec<Vein>) {
+    let centre = Vec2::new(DIGITATE_CENTRE, 0.0);
+    for (towards, length) in LEAFLETS {
+        let direction = Vec2::new(towards.cos(), leaf.width * towards.sin());
+        let reach = 0.95 * length * (1.0 - DIGITATE_CENTRE);
+        veins.push(Vein { from: centre, to: centre + direction * reach, radius: 0.7 * MIDRIB_RADIUS });
+        let axis = direction.normalize_or(Vec2::X);
+        for pair in 0..leaf.vein_pairs {
+            let root = centre + direction * (reach * (pair as f32 + 1.5) / (leaf.vein_pairs as f32 + 2.0));
+            side_veins(root, axis, 0.17 * length, leaf.vein_angle_deg.to_radians(), veins);
+        }
+    }
 }
 
 /// A pair of veins in three pieces each, bowing towards `axis`.

@@ -29,7 +29,8 @@ use bevy_windwood::{
 use flight::Flight;
 use std::time::{Duration, Instant};
 use stress::{Slowest, StressTest};
-use system_costs::{SystemCosts, median_and_p99};
+use system_costs::SystemCosts;
+pub use system_costs::median_and_p99;
 
 /// Trees of the largest forest.
 const LARGEST: f32 = 1e6;

@@ -4,7 +4,7 @@
 //! therefore measured again by CPU time, which does not pass while a thread waits.
 
 use super::{SIDE_M, flight::Flight, system_costs::median_and_p99};
-use crate::report::Report;
+use crate::{cpu_clock::CPU_CLOCK, report::Report};
 use bevy::prelude::*;
 use bevy_windwood::{SystemTimes, prelude::*};
 use std::time::Duration;
@@ -101,15 +101,6 @@ pub fn record(report: &mut Report, keys: [[&'static str; 2]; 3], slowest_ms: [Sl
         report.record(worst_key, worst_ms, "the worst of the five");
     }
 }
-
-/// The CPU time of the current thread, where there is such a clock.
-#[cfg(unix)]
-const CPU_CLOCK: Option<fn() -> Duration> = Some(|| {
-    use rustix::time::{ClockId, clock_gettime};
-    Duration::try_from(clock_gettime(ClockId::ThreadCPUTime)).unwrap_or_default()
-});
-#[cfg(not(unix))]
-const CPU_CLOCK: Option<fn() -> Duration> = None;
 
 /// Places spread evenly over the inner forest (the R2 sequence of Roberts 2018), m.
 fn place_m(index: usize, step: f32) -> f32 {

@@ -1,5 +1,6 @@
 use super::*;
 use crate::{
+    editor::steps::Steps,
     render::TreeMeshOf,
     schedule::WindwoodSystems,
     tree::{Tree, TreePlugin},

@@ -2,17 +2,20 @@
 
 use crate::{
     editor::{
-        costs::{Costs, Frame as CostFrame},
+        costs::{Costs, Frame as CostFrame, SpeciesCost},
         ground_desk::GroundDesk,
         ground_variogram::GroundVariogram,
         land_pose::LandPose,
+        live_settings::LiveSettings,
         quadrat_histogram::QuadratHistogram,
         scene_view::{SceneView, tests::view},
         session::Session,
+        spectrum::Band,
         stage::Stage,
+        tip_motion::TipMotion,
         ui::{
-            Drawn, GroundFacts, LevelTables, Panel, Subjects, TreeFacts, UiState, WindFacts, WoodsFacts, draw,
-            wind_table,
+            Drawn, GroundFacts, LevelSettings, LevelTables, Panel, Subjects, TreeFacts, UiState, WindFacts, WoodsFacts,
+            draw, wind_table,
         },
         wind_measures::WindMeasures,
         woods::Woods,
@@ -27,6 +30,7 @@ use bevy::math::Vec2;
 use bevy_egui::egui::{
     Context, Event, FullOutput, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, Shape,
     accesskit::{Node, Role},
+    epaint::ClippedShape,
     pos2,
 };
 use std::{fs, time::Duration};
@@ -48,15 +52,25 @@ pub struct Desk {
     pub view: Option<SceneView>,
     pub stage: Stage,
     pub season: Season,
-    pub wind: Wind,
-    pub levels: LevelOfDetail,
-    pub forest: ForestSettings,
+    pub wind: LiveSettings<Wind>,
+    pub levels: LiveSettings<LevelSettings>,
+    pub tree: TreeFacts,
+    pub is_exporting: bool,
     measures: WindMeasures,
+    tip: TipMotion,
     costs: Costs,
     pub is_frozen: bool,
     pub size: (f32, f32, f32),
     output: Option<FullOutput>,
     time_s: f64,
+    modifiers: Modifiers,
+}
+
+/// The motion of some tree.
+fn tip() -> TipMotion {
+    let series: Vec<[f64; 2]> = (0..256).map(|sample| [0.5 * f64::from(sample), 0.1]).collect();
+    let spectrum = vec![Band { frequency_hz: 0.1, value: 1e-3 }, Band { frequency_hz: 1.0, value: 1e-4 }];
+    TipMotion { height_m: 16.2, along: series.clone(), across: series, spectrum, own: vec![("trunk", 0.4)] }
 }
 
 impl Desk {
@@ -85,6 +99,9 @@ impl Desk {
             let length = Duration::from_millis(16);
             costs.add(CostFrame { length, systems: systems.clone(), trees: [12, 345, 6789], bytes: 1 << 22 });
         });
+        let of =
+            |name: &str, trees| SpeciesCost { name: name.into(), trees, beams: 900 * trees, triangles: 34_567 * trees };
+        costs.set_species(vec![of("oak", 321), of("scots_pine", 1234)]);
         let field = WindField::synthesise(&FieldSettings::default()).unwrap();
         let mut desk = Self {
             _folder: folder,
@@ -99,15 +116,27 @@ impl Desk {
             view: None,
             stage: Stage::default(),
             season: Season::SUMMER,
-            wind: Wind::default(),
-            levels: LevelOfDetail::default(),
-            forest: ForestSettings::default(),
+            wind: LiveSettings::new(Wind::default()),
+            levels: LiveSettings::new(LevelSettings {
+                levels: LevelOfDetail::default(),
+                forest: Some(ForestSettings::default()),
+            }),
+            tree: TreeFacts {
+                height_m: 16.2,
+                beams: 1234,
+                triangles: 34567,
+                grown_in_ms: Some(84.0),
+                is_growing: false,
+            },
+            is_exporting: false,
+            tip: tip(),
             measures: WindMeasures::of(&field, 10.0),
             costs,
             is_frozen: false,
             size: WINDOWS[0],
             output: None,
             time_s: 0.0,
+            modifiers: Modifiers::NONE,
         };
         // Panels know their sizes after the first frame.
         for _ in 0..3 {
@@ -128,14 +157,14 @@ impl Desk {
 
     pub fn frame(&mut self, events: Vec<Event>) -> Drawn {
         let (width, height, scale) = self.size;
-        let mut input = RawInput { events, time: Some(self.time_s), ..RawInput::default() };
+        let modifiers = self.modifiers;
+        let mut input = RawInput { events, modifiers, time: Some(self.time_s), ..RawInput::default() };
         input.screen_rect = Some(Rect::from_min_max(pos2(0.0, 0.0), pos2(width / scale, height / scale)));
         input.viewports.entry(input.viewport_id).or_default().native_pixels_per_point = Some(scale);
         self.time_s += 0.1;
-        let tables = LevelTables::new(&self.levels, &self.forest);
-        let wind_table = wind_table(&self.wind);
-        let tree =
-            TreeFacts { height_m: 16.2, beams: 1234, triangles: 34567, grown_in_ms: Some(84.0), is_growing: false };
+        let tables = LevelTables::new(&self.levels.value().levels, &ForestSettings::default());
+        let wind_table = wind_table(self.wind.value());
+        let tree = self.tree.clone();
         let legend = [("order 0: 3 beams".to_owned(), [0.9, 0.8, 0.2])];
         let mut drawn = None;
         let context = self.context.clone();
@@ -146,7 +175,11 @@ impl Desk {
                 season: &mut self.season,
                 wind: &mut self.wind,
                 wind_table: &wind_table,
-                wind_facts: WindFacts { measures: Some(&self.measures), tip: None, is_changing: false },
+                wind_facts: WindFacts {
+                    measures: Some(&self.measures),
+                    tip: Some(("oak", &self.tip)),
+                    is_changing: false,
+                },
                 woods: &mut self.woods,
                 woods_facts: WoodsFacts { histogram: self.histogram.as_ref(), stems: 4321, is_growing: true },
                 ground: &mut self.ground,
@@ -154,11 +187,11 @@ impl Desk {
                 pose: &mut self.pose,
                 view: self.view.as_ref(),
                 levels: &mut self.levels,
-                forest: Some(&mut self.forest),
                 level_tables: &tables,
                 is_frozen: &mut self.is_frozen,
                 costs: &self.costs,
                 tree: &tree,
+                is_exporting: self.is_exporting,
                 legend: &legend,
                 has_turntable: true,
             };
@@ -169,9 +202,11 @@ impl Desk {
     }
 
     pub fn key(&mut self, modifiers: Modifiers, key: Key) {
+        self.modifiers = modifiers;
         for pressed in [true, false] {
             self.frame(vec![Event::Key { key, physical_key: None, pressed, repeat: false, modifiers }]);
         }
+        self.modifiers = Modifiers::NONE;
     }
 
     pub fn click(&mut self, at: Pos2) {
@@ -180,6 +215,13 @@ impl Desk {
             self.frame(vec![Self::button(at, pressed)]);
         }
         self.frame(Vec::new());
+    }
+
+    /// Presses and releases the main button, and returns what came of it.
+    pub fn press_and_see(&mut self, at: Pos2) -> Drawn {
+        self.frame(vec![Event::PointerMoved(at)]);
+        self.frame(vec![Self::button(at, true)]);
+        self.frame(vec![Self::button(at, false)])
     }
 
     pub fn button(at: Pos2, pressed: bool) -> Event {
@@ -200,6 +242,11 @@ impl Desk {
 
     /// What a screen reader is told: role, name, place.
     pub fn nodes(&self) -> Vec<(Role, String, Rect)> {
+        self.controls().into_iter().map(|(node, name, place)| (node.role(), name, place)).collect()
+    }
+
+    /// The same, with all that is told of each.
+    pub fn controls(&self) -> Vec<(Node, String, Rect)> {
         let update = self.output.as_ref().and_then(|output| output.platform_output.accesskit_update.clone()).unwrap();
         let nodes: std::collections::BTreeMap<_, Node> = update.nodes.iter().cloned().collect();
         let own_name = |node: &Node| node.label().or(node.value()).unwrap_or_default().to_owned();
@@ -211,7 +258,25 @@ impl Desk {
             let at = node.bounds()?;
             Some(Rect::from_min_max(pos2(at.x0 as f32, at.y0 as f32), pos2(at.x1 as f32, at.y1 as f32)))
         };
-        nodes.values().filter_map(|node| Some((node.role(), name(node), place(node)?))).collect()
+        nodes.values().filter_map(|node| Some((node.clone(), name(node), place(node)?))).collect()
+    }
+
+    /// What has the focus, as screen readers are told.
+    pub fn focused_control(&self) -> Option<(Node, String, Rect)> {
+        let update = self.output.as_ref()?.platform_output.accesskit_update.as_ref()?;
+        let (_, node) = update.nodes.iter().find(|(id, _)| *id == update.focus)?;
+        let bounds = node.bounds()?;
+        self.controls().into_iter().find(|(own, ..)| own.bounds() == Some(bounds) && own.role() == node.role())
+    }
+
+    /// All texts that are drawn.
+    pub fn texts(&self) -> Vec<String> {
+        let shapes = self.output.iter().flat_map(|output| &output.shapes);
+        let text = |shape: &ClippedShape| match &shape.shape {
+            Shape::Text(text) => Some(text.galley.text().to_owned()),
+            _ => None,
+        };
+        shapes.filter_map(text).collect()
     }
 
     pub fn find(&self, role: Role, name: &str) -> Rect {

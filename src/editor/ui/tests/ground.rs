@@ -6,6 +6,7 @@ use crate::editor::{
     ground_desk::{Fitting, GroundKind},
     map_fit::{MapFit, MapRequest, Progress},
     spline_points::control_points,
+    steps::Steps,
     ui::{Panel, theme::PANEL_WIDTH},
 };
 use bevy_egui::egui::{Key, Modifiers, Pos2, Rect, accesskit::Role, pos2, vec2};

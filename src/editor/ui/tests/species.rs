@@ -3,8 +3,10 @@
 use super::desk::Desk;
 use crate::{
     editor::{
+        envelope_handles::envelope_of,
         file_session::FileSession,
-        ui::{dialogs::Dialog, theme::PANEL_WIDTH},
+        steps::Steps,
+        ui::{Panel, dialogs::Dialog, theme::PANEL_WIDTH},
     },
     tree::{Growth, Species},
 };
@@ -143,4 +145,28 @@ fn another_model_of_growth_is_chosen_from_its_list() {
     assert!(matches!(desk.session.document().growth, Growth::Impressionist(_)));
     desk.key(Modifiers::COMMAND, Key::Z);
     assert!(matches!(desk.session.document().growth, Growth::ReevesBlau(_)));
+}
+
+#[test]
+fn the_top_of_the_envelope_is_dragged_in_the_picture_in_one_step() {
+    let mut desk = Desk::new("oak");
+    desk.open(Panel::Species);
+    desk.stage.shows_envelope = true;
+    desk.frame(Vec::new());
+    let original = desk.session.document().clone();
+    let turn_rad = desk.stage.turn_rad;
+    let envelope = |desk: &Desk| envelope_of(desk.session.document(), 1.0).unwrap();
+    let top_m = envelope(&desk).top_m;
+    let view = desk.view.clone().unwrap();
+    let [from, to] = [top_m, top_m + 6.0].map(|height_m| {
+        let at = view.screen(height_m * bevy::math::Vec3::Y).unwrap();
+        pos2(at.x, at.y)
+    });
+    desk.drag(&[from, from.lerp(to, 0.5), to]);
+    assert!((envelope(&desk).top_m - top_m - 6.0).abs() < 0.2, "{}", envelope(&desk).top_m);
+    assert_eq!(desk.stage.turn_rad, turn_rad, "the tree is not turned meanwhile");
+    desk.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(*desk.session.document(), original);
+    desk.drag(&[to + vec2(80.0, 0.0), to + vec2(140.0, 0.0)]);
+    assert_ne!(desk.stage.turn_rad, turn_rad, "beside the handles it is");
 }

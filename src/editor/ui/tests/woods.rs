@@ -6,6 +6,7 @@ use crate::{
         fields::Row,
         file_session::{FileSession, Message},
         plan_element::Element,
+        steps::Steps,
         ui::{Panel, theme::PANEL_WIDTH},
         variants::with_list,
         woods::Tool,

@@ -9,12 +9,13 @@ use crate::{
     },
 };
 
-const SHAPES: [LeafShape; 10] = [
+const SHAPES: [LeafShape; 11] = [
     LeafShape::Lobed,
     LeafShape::Ovate,
     LeafShape::Triangular,
     LeafShape::Lanceolate,
     LeafShape::Palmate,
+    LeafShape::Digitate,
     LeafShape::Deltoid,
     LeafShape::Obovate,
     LeafShape::Needle,

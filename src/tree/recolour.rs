@@ -1,6 +1,7 @@
-//! The colours of leaves over the year. The renderer's `season.wesl` has the same formulas, by texel; here they are baked.
+//! The colours of leaves over the year. `render/shaders/season.wesl` has the same formulas, and a test holds them equal.
 
-use crate::{texture::linear, tree::phenology::Phenology};
+use super::phenology::Phenology;
+use crate::texture::linear;
 use bevy::math::{FloatExt, Vec3};
 
 /// Leaves are at most so many times as light as the mean colour of their species in spring.
@@ -8,7 +9,7 @@ const GREATEST_LIGHTNESS: f32 = 4.0;
 
 /// How far the colour of leaves is from that of summer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct SeasonColour {
+pub struct SeasonColour {
     /// Youth (below 0) or autumn (above), -1 to 1.
     pub change: f32,
     /// Place between the two colours of autumn, 0 to 1.
@@ -16,7 +17,8 @@ pub(super) struct SeasonColour {
 }
 
 /// The colours of a species over the year, as light.
-pub(super) struct Recolouring {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Recolouring {
     spring: Vec3,
     autumn: [Vec3; 2],
     /// Luminance of a leaf in summer.
@@ -24,7 +26,8 @@ pub(super) struct Recolouring {
 }
 
 impl Recolouring {
-    /// Of a species whose leaves have this mean colour (sRGB) in summer.
+    /// Of a species whose leaves have this mean colour (sRGB 0 to 1) in summer.
+    #[must_use]
     pub fn new(phenology: &Phenology, summer: [f32; 3]) -> Self {
         let light = |colour| Vec3::from_array(linear(colour));
         Self {
@@ -34,7 +37,8 @@ impl Recolouring {
         }
     }
 
-    /// The colour that leaf of a colour in summer has then. Its brightness stays; twigs keep their colour.
+    /// The colour (light) that leaf of a colour in summer (light) has then. Its brightness stays; twigs keep their colour.
+    #[must_use]
     pub fn of(&self, summer: Vec3, season: SeasonColour) -> Vec3 {
         let [first, last] = self.autumn;
         let colour = if season.change > 0.0 { first.lerp(last, season.tone) } else { self.spring };
@@ -43,8 +47,9 @@ impl Recolouring {
     }
 }
 
-/// How much of a colour is that of leaf and not of twig: leaves are green.
-pub(super) fn leafness(light: Vec3) -> f32 {
+/// How much of a colour (light) is that of leaf and not of twig, 0 to 1: leaves are green.
+#[must_use]
+pub fn leafness(light: Vec3) -> f32 {
     let sum = light.element_sum().max(1e-5);
     (5.0 * (light.y - 0.5 * (light.x + light.z)) / sum).saturate()
 }
