@@ -9,12 +9,15 @@ mod fields;
 use crate::{
     hand::Hand,
     options::Options,
-    pictures::{look, set_theme, shoot},
+    pictures::{look, shoot},
     studio,
     support::capture::{self, create_folder},
 };
 use bevy::prelude::*;
-use bevy_egui::egui::{Key, Modifiers, Pos2, accesskit::Role};
+use bevy_egui::{
+    EguiContext,
+    egui::{Key, Modifiers, Pos2, accesskit::Role},
+};
 use bevy_windwood::{
     editor::{Arrangement, StageCamera, Workbench},
     prelude::*,
@@ -74,7 +77,10 @@ pub fn run(app: &mut App, options: &Options) -> Result<(), String> {
     app.world_mut().spawn((StageCamera, capture::camera(&target), studio::projection()));
     look(app, false);
     (0..8).for_each(|_| app.update());
-    set_theme(app, options);
+    // Where there is no window, nobody has asked for the names of controls.
+    let world = app.world_mut();
+    let mut contexts = world.query::<&mut EguiContext>();
+    contexts.iter_mut(world).for_each(|mut context| context.get_mut().enable_accesskit());
     let mut tour = Tour { app, target, options, pictures: 0 };
     tour.make_species()?;
     tour.export()?;
