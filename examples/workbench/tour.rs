@@ -33,7 +33,7 @@ const FIRST: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/species/maple.s
 const MADE: &str = include_str!("../../assets/species/horse_chestnut.species.ron");
 const NAME: &str = "horse_chestnut";
 /// A real map, and its cells, m.
-const MAP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/terrain/rmnp-dem-16bit.png");
+const MAP: &str = "assets/terrain/rmnp-dem-16bit.png";
 const MAP_CELLS_M: [(&str, &str); 2] = [("Cell, east", "233"), ("Cell, south", "234")];
 /// Longest wait for work in the background.
 const TIMEOUT: Duration = Duration::from_secs(300);
