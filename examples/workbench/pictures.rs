@@ -120,6 +120,10 @@ pub fn render(app: &mut App, options: &Options) -> Result<(), String> {
 /// # Errors
 /// If it does not get ready, or the file cannot be written.
 pub fn shoot(app: &mut App, target: &Handle<Image>, options: &Options, name: &str) -> Result<(), String> {
+    // The panels are there after the first frames.
+    look(app, false);
+    (0..SETTLING_FRAMES).for_each(|_| step(app));
+    set_theme(app, options);
     wait(app, name)?;
     let picture = capture::capture(app, target, options.image.size)?;
     let path = options.out.join(format!("{name}.png"));
@@ -153,15 +157,18 @@ fn show(app: &mut App, options: &Options, shot: &Shot) {
         }
         workbench.change(species, "Slender");
     }
-    set_theme(app, options);
 }
 
-/// Has panels in the colours that were asked for.
-pub fn set_theme(app: &mut App, options: &Options) {
+/// Has panels in the colours that were asked for. Nothing fades in: the clock of pictures stands still.
+fn set_theme(app: &mut App, options: &Options) {
     let theme = if options.light { ThemePreference::Light } else { ThemePreference::Dark };
     let world = app.world_mut();
     let mut contexts = world.query_filtered::<&mut EguiContext, With<PrimaryEguiContext>>();
-    contexts.iter_mut(world).for_each(|mut context| context.get_mut().set_theme(theme));
+    for mut context in contexts.iter_mut(world) {
+        let context = context.get_mut();
+        context.set_theme(theme);
+        context.all_styles_mut(|style| style.animation_time = 0.0);
+    }
 }
 
 /// Opens the file as it is on disk: what a picture before has changed is given up.

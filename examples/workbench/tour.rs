@@ -9,12 +9,15 @@ mod fields;
 use crate::{
     hand::Hand,
     options::Options,
-    pictures::{look, set_theme, shoot},
+    pictures::{look, shoot},
     studio,
     support::capture::{self, create_folder},
 };
 use bevy::prelude::*;
-use bevy_egui::egui::{Key, Modifiers, Pos2, accesskit::Role};
+use bevy_egui::{
+    EguiContext,
+    egui::{Key, Modifiers, Pos2, accesskit::Role},
+};
 use bevy_windwood::{
     editor::{Arrangement, StageCamera, Workbench},
     prelude::*,
@@ -30,7 +33,7 @@ const FIRST: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/species/maple.s
 const MADE: &str = include_str!("../../assets/species/horse_chestnut.species.ron");
 const NAME: &str = "horse_chestnut";
 /// A real map, and its cells, m.
-const MAP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/terrain/rmnp-dem-16bit.png");
+const MAP: &str = "assets/terrain/rmnp-dem-16bit.png";
 const MAP_CELLS_M: [(&str, &str); 2] = [("Cell, east", "233"), ("Cell, south", "234")];
 /// Longest wait for work in the background.
 const TIMEOUT: Duration = Duration::from_secs(300);
@@ -74,7 +77,10 @@ pub fn run(app: &mut App, options: &Options) -> Result<(), String> {
     app.world_mut().spawn((StageCamera, capture::camera(&target), studio::projection()));
     look(app, false);
     (0..8).for_each(|_| app.update());
-    set_theme(app, options);
+    // Where there is no window, nobody has asked for the names of controls.
+    let world = app.world_mut();
+    let mut contexts = world.query::<&mut EguiContext>();
+    contexts.iter_mut(world).for_each(|mut context| context.get_mut().enable_accesskit());
     let mut tour = Tour { app, target, options, pictures: 0 };
     tour.make_species()?;
     tour.export()?;

@@ -1,7 +1,7 @@
 //! The panel of a wood: its plan, the tools, and the fields of what is chosen.
 
 use bevy::math::Vec2;
-use bevy_egui::egui::{Button, CollapsingHeader, ComboBox, DragValue, ScrollArea, Ui, WidgetInfo, WidgetType, vec2};
+use bevy_egui::egui::{Button, CollapsingHeader, ComboBox, DragValue, ScrollArea, Ui, vec2};
 
 use super::{
     dialogs::Dialog,

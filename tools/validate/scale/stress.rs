@@ -7,7 +7,6 @@ use super::{SIDE_M, flight::Flight, system_costs::median_and_p99};
 use crate::{cpu_clock::CPU_CLOCK, report::Report};
 use bevy::prelude::*;
 use bevy_windwood::{SystemTimes, prelude::*};
-use std::time::Duration;
 
 /// Repetitions of each. The slowest frame of each counts: the median of them is not disturbed by other work of the machine, and
 /// the worst is recorded too.

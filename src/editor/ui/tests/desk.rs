@@ -63,7 +63,6 @@ pub struct Desk {
     pub size: (f32, f32, f32),
     output: Option<FullOutput>,
     time_s: f64,
-    modifiers: Modifiers,
 }
 
 /// The motion of some tree.
@@ -136,7 +135,6 @@ impl Desk {
             size: WINDOWS[0],
             output: None,
             time_s: 0.0,
-            modifiers: Modifiers::NONE,
         };
         // Panels know their sizes after the first frame.
         for _ in 0..3 {
@@ -157,8 +155,7 @@ impl Desk {
 
     pub fn frame(&mut self, events: Vec<Event>) -> Drawn {
         let (width, height, scale) = self.size;
-        let modifiers = self.modifiers;
-        let mut input = RawInput { events, modifiers, time: Some(self.time_s), ..RawInput::default() };
+        let mut input = RawInput { events, time: Some(self.time_s), ..RawInput::default() };
         input.screen_rect = Some(Rect::from_min_max(pos2(0.0, 0.0), pos2(width / scale, height / scale)));
         input.viewports.entry(input.viewport_id).or_default().native_pixels_per_point = Some(scale);
         self.time_s += 0.1;
@@ -202,11 +199,10 @@ impl Desk {
     }
 
     pub fn key(&mut self, modifiers: Modifiers, key: Key) {
-        self.modifiers = modifiers;
         for pressed in [true, false] {
-            self.frame(vec![Event::Key { key, physical_key: None, pressed, repeat: false, modifiers }]);
+            let held = Event::ModifiersChanged(if pressed { modifiers } else { Modifiers::NONE });
+            self.frame(vec![held, Event::Key { key, physical_key: None, pressed, repeat: false, modifiers }]);
         }
-        self.modifiers = Modifiers::NONE;
     }
 
     pub fn click(&mut self, at: Pos2) {
