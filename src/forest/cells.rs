@@ -1,6 +1,8 @@
 //! The cells of a forest: planted about the viewers in the background, a tile at a time. Stems go into the store, near trees and impostors
 //! take what they need of each tile when it comes.
 
+#[cfg(feature = "render")]
+use super::tree_impostors::{ImpostorSize, TreeImpostors};
 use super::{
     cell_planter::CellPlanter,
     change_index::ChangeIndex,
@@ -10,8 +12,6 @@ use super::{
     reach::{known_m, tile_of, tile_stream},
     stand::Stand,
 };
-#[cfg(feature = "render")]
-use super::tree_impostors::{ImpostorSize, TreeImpostors};
 #[cfg(feature = "render")]
 use crate::render::impostors::near_mask::MaskRange;
 use crate::{

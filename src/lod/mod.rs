@@ -28,6 +28,8 @@ mod thinned;
 mod tests;
 
 pub use bake::scene::Scene;
+#[cfg(feature = "render")]
+pub(crate) use coarse_sway::{bind_to_swaying, swaying_beams};
 pub use decimate::{DecimatedMeshes, decimate, prunable_radius_m};
 pub use impostor::{
     atlas::{ImpostorAtlas, ImpostorView},
@@ -42,8 +44,6 @@ pub use screen_size::{Lens, LodScreenSizes};
 #[cfg(all(test, feature = "render"))]
 pub(crate) use settings::LEAST_LEAF_SHARE;
 pub use settings::{Decimation, EnvelopeSettings, ImpostorSettings, LodBakeSettings, MOST_LEVELS};
-#[cfg(feature = "render")]
-pub(crate) use coarse_sway::{bind_to_swaying, swaying_beams};
+pub use thinned::{ThinnedMeshes, thinned_meshes};
 #[cfg(feature = "render")]
 pub(crate) use thinned::{is_coarse, thinned};
-pub use thinned::{ThinnedMeshes, thinned_meshes};

@@ -3,9 +3,7 @@
 use super::{species::ImpostorSpeciesLibrary, tiles::ForestImpostors};
 use crate::{
     forest::cells::ForestCells,
-    render::{
-        buffers::table_uploads::TableUploads, impostors::near_mask::NearMasks, lod::viewers::LodViewers,
-    },
+    render::{buffers::table_uploads::TableUploads, impostors::near_mask::NearMasks, lod::viewers::LodViewers},
 };
 use bevy::prelude::*;
 

@@ -77,10 +77,9 @@ impl MaterialAssets<'_> {
             normal_map_texture: images.foliage_normal.map(|normal| self.images.add(normal)),
             ..leaf_material(species.foliage.translucency)
         };
-        let bare_foliage = images.bare_foliage.map(|twigs| StandardMaterial {
-            base_color_texture: Some(self.images.add(twigs)),
-            ..leaf_material(0.0)
-        });
+        let bare_foliage = images
+            .bare_foliage
+            .map(|twigs| StandardMaterial { base_color_texture: Some(self.images.add(twigs)), ..leaf_material(0.0) });
         let bare_extension = SwayExtension { leaf: extension.leaf.bare(), ..extension.clone() };
         let [cut_off, bare_cut_off] = images.coarse_cut_offs.map(AlphaMode::Mask);
         let coarse = |material: &StandardMaterial, alpha_mode| StandardMaterial { alpha_mode, ..material.clone() };
