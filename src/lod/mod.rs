@@ -15,6 +15,7 @@
 //! | `settings` | What can be chosen about all of these. |
 
 mod bake;
+#[cfg(feature = "render")]
 mod coarse_sway;
 mod decimate;
 mod impostor;

@@ -37,7 +37,7 @@ pub fn wood(species: &Species, skeleton: &Skeleton) -> WoodVertices {
     tubes(species, skeleton, WoodDetail::Full, |_| true)
 }
 
-/// The surface of some branches, by their first beams, with as few vertices as show where they are small: a fifth of those of the full one.
+/// The surface of some branches, by their first beams, with as few vertices as show where branches are a pixel or two wide.
 #[must_use]
 pub(crate) fn coarse_wood(species: &Species, skeleton: &Skeleton, stays: impl Fn(usize) -> bool) -> WoodVertices {
     tubes(species, skeleton, WoodDetail::Coarse, stays)

@@ -148,8 +148,8 @@ impl TreeRow {
     /// Where no impostor stands for a tree.
     pub const NO_IMPOSTOR: u32 = u32::MAX;
 
-    /// From where on an impostor stands for it, m, in steps of half a metre, and the height of that, m, in steps of 4 mm. Both are rounded up:
-    /// a tree may fade late, but not early.
+    /// From where on an impostor stands for it, m, in steps of half a metre, and the height of that, m, in steps of 4 mm. Both are rounded
+    /// up: a tree may fade late, but not early.
     pub fn impostor(from_m: f32, height_m: f32) -> u32 {
         let from = (from_m * 2.0).ceil().clamp(0.0, 65_534.0) as u32;
         let height = (height_m * 256.0).ceil().clamp(0.0, 65_535.0) as u32;

@@ -5,12 +5,12 @@
 //! a crown costs is the area of its cards, whatever the mask leaves of it.
 
 use super::{LeafKind, cover::card_cover};
-use crate::{
-    texture::{MASK_CUT_OFF, TextureData},
-    tree::{Growth, Species},
-};
+#[cfg(any(test, feature = "render"))]
+use crate::texture::{MASK_CUT_OFF, TextureData};
+use crate::tree::{Growth, Species};
 
 /// The mip that coarse levels read: the coarsest that is used of masks.
+#[cfg(any(test, feature = "render"))]
 pub(crate) const COARSE_MIP: usize = 3;
 /// A mask lets so many times as much through, at most, and no more than such a share of a card.
 const MOST_GAIN: f32 = 1.7;
@@ -27,8 +27,13 @@ pub(crate) fn coarse_mask_gain(species: &Species) -> f32 {
     (MOST_COVER / card_cover(&species.foliage.leaf, species.seed).max(1e-3)).clamp(1.0, MOST_GAIN)
 }
 
+/// Less than this is hardly there, and stays away.
+#[cfg(any(test, feature = "render"))]
+const LEAST_CUT_OFF: f32 = 0.1;
+
 /// The cut-off that lets so many times as many texels of a mask through as [`MASK_CUT_OFF`].
 #[must_use]
+#[cfg(any(test, feature = "render"))]
 pub(crate) fn coarse_cut_off(mask: &TextureData, gain: f32) -> f32 {
     let Some(mip) = mask.mips.get(COARSE_MIP) else { return MASK_CUT_OFF };
     let mut alphas: Vec<u8> = mip.iter().skip(3).step_by(4).copied().collect();
@@ -36,11 +41,9 @@ pub(crate) fn coarse_cut_off(mask: &TextureData, gain: f32) -> f32 {
     let wanted = (gain * drawn as f32).round() as usize;
     let Some(last) = wanted.checked_sub(1).filter(|last| *last < alphas.len()) else { return MASK_CUT_OFF };
     let (_, &mut faintest, _) = alphas.select_nth_unstable_by(last, |a, b| b.cmp(a));
-    // Half a step below the faintest. What is hardly there stays away.
+    // Half a step below the faintest.
     ((f32::from(faintest) - 0.5) / 255.0).clamp(LEAST_CUT_OFF, MASK_CUT_OFF)
 }
-
-const LEAST_CUT_OFF: f32 = 0.1;
 
 #[cfg(test)]
 mod tests {

@@ -1,7 +1,12 @@
 //! The surface of the wood has no holes that show.
 
 use super::{fir, oak};
-use crate::tree::{individual::grow, skeleton::Skeleton, vertices::WoodVertices, wood_mesh::wood};
+use crate::tree::{
+    individual::grow,
+    skeleton::Skeleton,
+    vertices::WoodVertices,
+    wood_mesh::{coarse_wood, wood},
+};
 use bevy::math::Vec3;
 use std::collections::HashMap;
 
@@ -55,6 +60,30 @@ fn open_edges_of_bark_lie_inside_the_parent_or_below_the_ground() {
         // At a kink of a thin limb the drawn surface is narrower than its cross-sections: a few feet stand out there.
         assert!(100 * shown < tried, "{}: {shown} of {tried} vertices at open edges show", species.name);
     }
+}
+
+/// Area of all triangles, m^2: four times what is seen of a convex surface from all sides in the mean (Cauchy).
+fn area_m2(wood: &WoodVertices) -> f32 {
+    let corner = |index: u32| Vec3::from(wood.positions[index as usize]);
+    let of = |triple: &[u32]| {
+        let [a, b, c] = [triple[0], triple[1], triple[2]].map(corner);
+        0.5 * (b - a).cross(c - a).length()
+    };
+    wood.indices.chunks_exact(3).map(of).sum()
+}
+
+#[test]
+fn coarse_wood_has_few_vertices_and_is_as_wide() {
+    let species = oak();
+    let skeleton = grow(&species, 90.0, 2);
+    let (full, coarse) = (wood(&species, &skeleton), coarse_wood(&species, &skeleton, |_| true));
+    let share = coarse.positions.len() as f32 / full.positions.len() as f32;
+    let area = area_m2(&coarse) / area_m2(&full);
+    println!("{share} of the vertices, {area} of the area");
+    assert!(share < 0.75, "{share} of the vertices");
+    assert!((area - 1.0).abs() < 0.1, "{area} of the area");
+    let trunk = coarse_wood(&species, &skeleton, |beam| beam == 0);
+    assert!(!trunk.indices.is_empty() && trunk.positions.len() < coarse.positions.len());
 }
 
 /// The branch of each beam, as the index of its first beam.
