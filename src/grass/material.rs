@@ -50,7 +50,8 @@ struct GrassUniform {
     period_s: f32,
     thins_from_m: f32,
     vanishes_at_m: f32,
-    padding: Vec2,
+    swing_hz: f32,
+    swing_damping_ratio: f32,
 }
 
 impl From<&GrassPatch> for GrassUniform {
@@ -66,7 +67,8 @@ impl From<&GrassPatch> for GrassUniform {
             period_s: FLUTTER_PERIOD_S as f32,
             thins_from_m: look.thins_from_m,
             vanishes_at_m: look.vanishes_at_m,
-            padding: Vec2::ZERO,
+            swing_hz: response.swing_hz,
+            swing_damping_ratio: response.swing_damping_ratio,
         }
     }
 }
