@@ -81,7 +81,7 @@ pub use species::{Species, SpeciesError};
 #[cfg(all(test, feature = "render"))]
 pub(crate) use bounds::MOST_ENLARGED;
 #[cfg(feature = "render")]
-pub(crate) use ecs::species_models::store_baked_models;
+pub(crate) use ecs::grow_trees::regrow_trees;
 
 #[cfg(test)]
 mod tests;
