@@ -149,7 +149,8 @@ pub(in crate::sway) fn gather_pushers(
         }
     }
     pushing.sort_unstable_by_key(|(entity, _)| *entity);
-    trails.follow(&pushing, (clock.time_s - clock.previous_s) as f32, &mut bodies.trail);
+    let frame_s = (clock.time_s - clock.previous_s) as f32;
+    trails.follow(pushing.iter().map(|(entity, body)| (*entity, body.capsule)), frame_s, &mut bodies.trail);
     bodies.now.extend(pushing.drain(..).map(|(_, body)| body));
 }
 

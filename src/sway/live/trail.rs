@@ -1,6 +1,6 @@
 //! Where pushers have been in the last moments: the grass there is still swinging back.
 
-use super::pusher::PushingBody;
+use crate::dynamics::Capsule;
 use bevy::prelude::*;
 use std::collections::{BTreeMap, VecDeque};
 
@@ -62,7 +62,7 @@ impl Trail {
     }
 
     /// Notes where the body is.
-    fn follow(&mut self, PushingBody { capsule, .. }: &PushingBody, frame_s: f32) {
+    fn follow(&mut self, capsule: Capsule, frame_s: f32) {
         let ends = capsule.ends;
         self.now = Some(ends);
         self.radius_m = capsule.radius_m;
@@ -104,10 +104,15 @@ pub(in crate::sway) struct Trails(BTreeMap<Entity, Trail>);
 
 impl Trails {
     /// Lets a frame pass, and writes where bodies have been, and are now.
-    pub fn follow(&mut self, bodies: &[(Entity, PushingBody)], frame_s: f32, pieces: &mut Vec<TrailPiece>) {
+    pub fn follow(
+        &mut self,
+        bodies: impl Iterator<Item = (Entity, Capsule)>,
+        frame_s: f32,
+        pieces: &mut Vec<TrailPiece>,
+    ) {
         self.0.values_mut().for_each(|trail| trail.age(frame_s));
         for (entity, body) in bodies {
-            self.0.entry(*entity).or_default().follow(body, frame_s);
+            self.0.entry(entity).or_default().follow(body, frame_s);
         }
         self.0.retain(|_, trail| trail.now.is_some() || !trail.placements.is_empty());
         pieces.clear();
@@ -118,7 +123,6 @@ impl Trails {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::Capsule;
 
     const FRAME_S: f32 = 0.02;
 
@@ -127,10 +131,8 @@ mod tests {
         let (mut trails, entity) = (Trails::default(), Entity::from_raw_u32(1).expect("it is a number"));
         let frame = |place: Option<Vec3>| {
             let capsule = place.map(|place| Capsule { ends: [place; 2], radius_m: 0.5 });
-            let bodies: Vec<_> =
-                capsule.map(|capsule| (entity, PushingBody { capsule, force_n: 1.0 })).into_iter().collect();
             let mut pieces = Vec::new();
-            trails.follow(&bodies, FRAME_S, &mut pieces);
+            trails.follow(capsule.map(|capsule| (entity, capsule)).into_iter(), FRAME_S, &mut pieces);
             pieces
         };
         places.map(frame).collect()
