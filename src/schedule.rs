@@ -29,7 +29,8 @@ pub enum WindwoodSystems {
     /// In `PostUpdate`, before transforms are propagated. Articulated trees move their beams and leaves, by the wind of
     /// `AdvanceWind`.
     Pose,
-    /// In `PostUpdate`, after transforms are propagated. Trees that have come, gone or moved are noted for rays, and listeners are told.
+    /// In `PostUpdate`, after transforms are propagated. Trees that have come or moved are noted, for rays and for what touches them in the next
+    /// frame, and listeners are told.
     Query,
     /// In `PostUpdate`, after transforms are propagated. The clock of the frame, and tables that changed, are sent to the
     /// GPU.

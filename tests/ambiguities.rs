@@ -15,7 +15,7 @@ use bevy_windwood::SystemTimes;
 use std::{collections::BTreeSet, time::Duration};
 
 /// Pairs of systems whose order is still to be chosen.
-const KNOWN: [&str; 14] = [
+const KNOWN: [&str; 9] = [
     "PostUpdate: another, cull_cells",
     "PostUpdate: another, measure_species",
     "PostUpdate: another, update_posed_trees",
@@ -25,11 +25,6 @@ const KNOWN: [&str; 14] = [
     "Update: another, bake_impostor_species",
     "Update: another, finish_preparing_species",
     "Update: another, update_lod_viewers",
-    "Update: finish_preparing_species, grow_trees",
-    "Update: finish_preparing_species, regrow_trees",
-    "Update: grow_trees, start_preparing_species",
-    "Update: pack_incoming_wind, update_wind_exposure",
-    "Update: regrow_trees, start_preparing_species",
 ];
 
 const ANOTHER: &str = "another";

@@ -3,7 +3,7 @@
 use bevy::{math::DVec2, prelude::*};
 use bevy_windwood::{
     fire::{Flames, flicker},
-    grass::{Meadow, spine},
+    grass::{Meadow, spine, swing},
     prelude::*,
 };
 use std::sync::Arc;
@@ -141,7 +141,13 @@ fn the_flames_of_a_removed_fire_are_removed() {
 /// The numbers of a constant of a shader.
 fn constant(shader: &str, name: &str) -> Vec<f32> {
     let line = shader.lines().find(|line| line.starts_with(&format!("const {name}:"))).expect("the shader has it");
-    let value = line.split(" = ").nth(1).expect("it has a value").trim().trim_start_matches("vec3(");
+    let value = line
+        .split(" = ")
+        .nth(1)
+        .expect("it has a value")
+        .trim()
+        .trim_start_matches("vec3(")
+        .trim_start_matches("vec2(");
     value.trim_end_matches([')', ';', 'u']).split(',').map(|number| number.trim().parse().expect("a number")).collect()
 }
 
@@ -151,6 +157,7 @@ fn shader_constants_equal_those_in_rust() {
     assert_eq!(constant(blade, "LINKS"), [spine::LINKS as f32]);
     assert_eq!(constant(blade, "TIP_ANGLE_LIMIT_RAD"), [spine::TIP_ANGLE_LIMIT_RAD]);
     assert_eq!(constant(blade, "ANGLE_LIMIT_RAD"), [spine::ANGLE_LIMIT_RAD]);
+    assert_eq!(constant(blade, "REST_S"), swing::REST_S);
     let fire = include_str!("../src/fire/shaders/fire.wesl");
     assert_eq!(constant(fire, "WEIGHTS"), flicker::WEIGHTS);
 }

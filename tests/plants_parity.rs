@@ -24,6 +24,7 @@ use bevy_windwood::{
     grass::{
         blades::{Blade, layout_blades},
         spine::{LINKS, push_bend, tip_bend},
+        swing::{Stretch, Swing},
     },
     prelude::*,
     render::SwayBuffers,
@@ -37,7 +38,7 @@ use support::{
 
 const HALF_BEND_SPEED_M_S: f32 = 10.0;
 /// Rows of results a blade.
-const ROWS: usize = LINKS + 4;
+const ROWS: usize = LINKS + 5;
 /// One source of each kind.
 const SOURCES: [(SourceKind, Vec3); 4] = [
     (SourceKind::Blast { charge_kg: 20.0 }, Vec3::new(-20.0, 1.0, 8.0)),
@@ -51,23 +52,32 @@ const SOURCES: [(SourceKind, Vec3); 4] = [
 /// The ends of a body that pushes blades, as the shader has them.
 const BODY: [Vec3; 2] = [Vec3::new(0.5, 0.4, -0.2), Vec3::new(0.1, 1.0, 0.3)];
 
+/// Where that body was, and where it will be, how long ago, and how blades swing behind it, as the shader has them.
+const STRETCH: Stretch = Stretch {
+    ends: [[Vec3::new(-1.0, 0.4, -0.2), Vec3::new(-1.4, 1.0, 0.3)], BODY],
+    radius_m: 0.6,
+    ages_s: [0.9, 0.1],
+};
+const SWING: Swing = Swing { frequency_hz: 1.7, damping_ratio: 0.15 };
+
 /// Time of the comparison, s: any will do.
 const TIME_S: f64 = 37.3;
 /// The height of the wind tables, m.
 const TABLE_HEIGHT_M: f32 = 10.0;
 
 /// A blade is three rows: root and length; azimuth, lean, droop; a wind that bends it and a place at which the wind of the tables
-/// is sampled, both as (x, z). The results are its joints, that wind, what sources blow near by, and how a body turns its tip.
+/// is sampled, both as (x, z). The results are its joints, that wind, what sources blow near by, and how a body turns its tip that is there
+/// and that has come from elsewhere.
 const BEND_SHADER: &str = "
 import bevy_windwood::{
-    grass::shaders::blade::{Blade, LINKS, joint_at, push_bend, tip_bend},
+    grass::shaders::blade::{Blade, LINKS, Stretch, Swing, hold, joint_at, left_by, push_bend, tip_bend},
     render::shaders::{wind::velocity_at, wind_sources::source_velocity_at},
 };
 @group(0) @binding(0) var<storage, read> blades: array<vec4<f32>>;
 @group(0) @binding(1) var<storage, read_write> results: array<vec4<f32>>;
 @compute @workgroup_size(64)
 fn bend(@builtin(global_invocation_id) id: vec3<u32>) {
-    let first = (LINKS + 4u) * id.x;
+    let first = (LINKS + 5u) * id.x;
     if first >= arrayLength(&results) {
         return;
     }
@@ -83,6 +93,11 @@ fn bend(@builtin(global_invocation_id) id: vec3<u32>) {
     results[first + LINKS + 2u] = vec4(source_velocity_at(vec3(0.05 * c.z, 1.5, 0.05 * c.w), 0u), 1.0);
     let turned = push_bend(a.xyz, a.w, vec3(0.5, 0.4, -0.2), vec3(0.1, 1.0, 0.3), 0.6, vec2(1.0, 0.0));
     results[first + LINKS + 3u] = vec4(turned, 0.0, 1.0);
+    let stretch = Stretch(
+        vec3(-1.0, 0.4, -0.2), vec3(-1.4, 1.0, 0.3), vec3(0.5, 0.4, -0.2), vec3(0.1, 1.0, 0.3), 0.6, vec2(0.9, 0.1),
+    );
+    let left = left_by(stretch, a.xyz, a.w, Swing(1.7, 0.15), vec2(1.0, 0.0));
+    results[first + LINKS + 4u] = vec4(hold(left.tip, turned), 0.0, 1.0);
 }
 ";
 
@@ -133,8 +148,9 @@ fn wind_and_bent_blades_agree_on_gpu_and_cpu() {
     assert!(results.iter().all(|row| row.w == 1.0), "every row was written");
     let active = app.world().resource::<ActiveWind>();
     let sources = app.world().resource::<WindSources>();
-    let (mut bend_error, mut wind_error, mut source_error, mut push_error) = (0.0_f32, 0.0_f32, 0.0_f32, 0.0_f32);
-    let (mut blown, mut pushed) = (0, 0);
+    let (mut bend_error, mut wind_error, mut source_error) = (0.0_f32, 0.0_f32, 0.0_f32);
+    let (mut push_error, mut swing_error) = (0.0_f32, 0.0_f32);
+    let (mut blown, mut pushed, mut swinging) = (0, 0, 0);
     for (number, there) in results.chunks_exact(ROWS).enumerate() {
         let (blade, place) = (&blades[number], places[number]);
         for (here, there) in blade.spine(tip_bend(winds[number], HALF_BEND_SPEED_M_S)).iter().zip(there) {
@@ -149,9 +165,13 @@ fn wind_and_bent_blades_agree_on_gpu_and_cpu() {
         let turned = push_bend(blade.root, blade.length_m, BODY, 0.6, Vec2::X);
         pushed += usize::from(turned.length() > 0.1);
         push_error = push_error.max(turned.distance(there[LINKS + 3].xy()));
+        let swung = SWING.tip(turned, blade.root, blade.length_m, &[STRETCH], Vec2::X);
+        swinging += usize::from(turned == Vec2::ZERO && swung.length() > 0.1);
+        swing_error = swing_error.max(swung.distance(there[LINKS + 4].xy()));
     }
     assert!(blown > 100 && source_error < 2e-3, "of {blown} places the two blow differently by {source_error}");
     assert!(pushed > 100 && push_error < 1e-3, "{pushed} blades are pushed, differently by {push_error} rad");
+    assert!(swinging > 100 && swing_error < 1e-3, "{swinging} blades swing back, differently by {swing_error} rad");
     assert!(bend_error < 1e-3, "the two bend differently by {bend_error} of a blade's length");
     // The shader computes the time in 32 bits, to some 1e-4 s. Gusts change by less than this in that time.
     assert!(wind_error < 1e-2, "the two winds differ by {wind_error} m/s");

@@ -72,7 +72,7 @@ fn constants_of_sources_and_bodies_are_equal_in_rust_and_wesl() {
         (include_str!("../src/wind/source/downwash.rs"), sources, &["LAYER_SHARE"]),
         (include_str!("../src/wind/source/vortex.rs"), sources, &["PEAK", "ENDS_FROM"]),
         (include_str!("../src/grass/spine.rs"), blade, &["TIP_WAY", "LEAST_M"]),
-        (include_str!("../src/render/instances/rows.rs"), frame, &["MOST_SOURCES", "MOST_PUSHERS"]),
+        (include_str!("../src/render/instances/rows.rs"), frame, &["MOST_SOURCES", "MOST_PUSHERS", "MOST_TRAILS"]),
     ] {
         names.iter().for_each(|name| assert_eq!(value(code, name), value(shader, name), "{name}"));
     }

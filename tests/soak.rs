@@ -1,6 +1,6 @@
 //! A game that goes on and on: it walks, teleports, fells, plants, changes the wind, lets trees come and go, all at random. Every minute of its
 //! time it goes home and puts everything away. What is there then must be what was there before: entities, handles, memory, buffers on the
-//! GPU. (It draws in the beginning alone: docs/trust.md says why.) Needs a Vulkan driver. Mesa's software one will do.
+//! GPU. Needs a Vulkan driver. Mesa's software one will do.
 //!
 //! ```sh
 //! cargo test --test soak -- --ignored --nocapture        # an hour of the game's time

@@ -6,8 +6,8 @@ mod server;
 use bevy::{ecs::system::RunSystemOnce, prelude::*, time::TimeUpdateStrategy};
 use bevy_windwood::{
     prelude::*,
-    query::{TreePlaces, TreeTrace, WindAt},
-    tree::{TreeModel, body::TreeCapsule},
+    query::{TreeTrace, WindAt},
+    tree::{TreeModel, TreePlaces, body::TreeCapsule},
 };
 use server::{server_app, shipped_assets};
 use std::time::Duration;
@@ -239,4 +239,36 @@ fn listeners_hear_more_in_a_stronger_wind_and_nothing_in_winter() {
     *app.world_mut().resource_mut::<Season>() = Season::WINTER;
     (0..120).for_each(|_| app.update());
     assert!(heard(&mut app, near).rustle_level < 0.01, "bare trees do not rustle");
+}
+
+#[test]
+fn a_source_is_felt_and_heard_among_trees() {
+    let mut app = app();
+    for k in 0..9 {
+        let tree = plant(&mut app, "birch", Transform::from_xyz(4.0 * (k % 3) as f32, 0.0, 4.0 * (k / 3) as f32));
+        app.world_mut().entity_mut(tree).insert(InCanopy(Canopy {
+            height_m: 15.0,
+            frontal_area_index: 1.0,
+            exposure: [0.0; 8],
+        }));
+    }
+    settle(&mut app);
+    let place = Vec3::new(4.0, 6.0, 4.0);
+    let listener = app.world_mut().spawn((WindListener::default(), Transform::from_translation(place))).id();
+    (0..60).for_each(|_| app.update());
+    let heard = |app: &App| app.world().get::<WindListener>(listener).expect("it listens").rustle_level;
+    let without = heard(&app);
+    let jet = SourceKind::Cone { speed_m_s: 25.0, nozzle_radius_m: 3.0, half_angle_deg: 15.0 };
+    app.world_mut().spawn((WindSource::new(jet), Transform::from_translation(place + Vec3::Z * 9.0)));
+    (0..60).for_each(|_| app.update());
+    let blown = wind_at(&mut app, place);
+    let loud = heard(&app);
+    assert!(loud > without + 0.1, "{loud} after {without}");
+    // At the same moment without it: all that differs is what it blows.
+    let source = app.world().resource::<WindSources>().velocity(place);
+    assert!(source.length() > 5.0, "{source}");
+    app.insert_resource(WindSources::default());
+    let alone = wind_at(&mut app, place);
+    assert!((blown.velocity - alone.velocity).distance(source) < 1e-4, "{} after {}", blown.velocity, alone.velocity);
+    assert_eq!((blown.mean_m_s, blown.deviation_m_s), (alone.mean_m_s, alone.deviation_m_s));
 }

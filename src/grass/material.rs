@@ -50,8 +50,9 @@ struct GrassUniform {
     period_s: f32,
     thins_from_m: f32,
     vanishes_at_m: f32,
+    swing_hz: f32,
+    swing_damping_ratio: f32,
     sky_under_trees: f32,
-    padding: f32,
 }
 
 impl From<&GrassPatch> for GrassUniform {
@@ -67,8 +68,9 @@ impl From<&GrassPatch> for GrassUniform {
             period_s: FLUTTER_PERIOD_S as f32,
             thins_from_m: look.thins_from_m,
             vanishes_at_m: look.vanishes_at_m,
+            swing_hz: response.swing_hz,
+            swing_damping_ratio: response.swing_damping_ratio,
             sky_under_trees: look.sky_under_trees,
-            padding: 0.0,
         }
     }
 }

@@ -119,12 +119,16 @@ pub struct GrassResponse {
     pub flutter_rad: f32,
     /// Frequency of the flutter, Hz: 0 to 20.
     pub flutter_hz: f32,
+    /// Frequency with which blades swing that a body has pushed aside and left, Hz: 0.1 to 20. Wheat has 2 to 3.
+    pub swing_hz: f32,
+    /// Their damping by critical damping: 0.05 to 0.95.
+    pub swing_damping_ratio: f32,
 }
 
 impl Default for GrassResponse {
     /// By eye: a fresh breeze of 8 m/s bends a meadow by some 35 degrees.
     fn default() -> Self {
-        Self { half_bend_speed_m_s: 10.0, flutter_rad: 0.08, flutter_hz: 2.2 }
+        Self { half_bend_speed_m_s: 10.0, flutter_rad: 0.08, flutter_hz: 2.2, swing_hz: 2.0, swing_damping_ratio: 0.2 }
     }
 }
 
@@ -201,7 +205,9 @@ impl GrassResponse {
     pub fn validate(&self) -> Result<(), SettingError> {
         require("half_bend_speed_m_s", self.half_bend_speed_m_s, 0.1..=1000.0)?;
         require("flutter_rad", self.flutter_rad, 0.0..=1.0)?;
-        require("flutter_hz", self.flutter_hz, 0.0..=20.0)
+        require("flutter_hz", self.flutter_hz, 0.0..=20.0)?;
+        require("swing_hz", self.swing_hz, 0.1..=20.0)?;
+        require("swing_damping_ratio", self.swing_damping_ratio, 0.05..=0.95)
     }
 }
 

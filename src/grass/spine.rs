@@ -18,8 +18,8 @@
 //! along a(s) at its middle, so the joints are the sums of unit vectors times l / n.
 //!
 //! A body that pushes blades aside turns those that would stand in it. Where it is nearest to an upright blade, that has to make way by
-//! `w`, horizontally and away from the body's middle: at once, and it comes back at once. Such a blade turns by `w` over the 3/4 of
-//! its length by which a tip moves for each radian, up to the limit of all leaning.
+//! `w`, horizontally and away from the body's middle: at once. Such a blade turns by `w` over the 3/4 of its length by which a tip moves for
+//! each radian, up to the limit of all leaning. How it swings back is in `swing`.
 
 use super::blades::Blade;
 use bevy::math::{Vec2, Vec3, Vec3Swizzles};
@@ -61,7 +61,7 @@ pub fn push_bend(root: Vec3, length_m: f32, ends: [Vec3; 2], radius_m: f32, fall
 /// Lengths by which a tip moves for each radian that it turns.
 const TIP_WAY: f32 = 0.75;
 /// Shorter than this, m (or m^2), is nothing.
-const LEAST_M: f32 = 1e-6;
+pub(super) const LEAST_M: f32 = 1e-6;
 
 impl Blade {
     /// The angle vector at the share `s` of its length, rad, with the tip bent by `tip`.

@@ -2,22 +2,19 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `grid` | Who stands near a place, and along a ray. |
 //! | `passage` | A ray on its way through trees. |
 //! | `rustle` | How loud leaves are, and levels that follow. |
 //! | `components` | [`WindListener`], [`TreeColliders`], [`TreeColliderSettings`]. |
-//! | `ecs/places` | [`TreePlaces`]: every tree that has a model, by place. |
 //! | `ecs/rays` | [`TreeRays`]: rays against trunks, limbs and crowns in their pose of this frame. |
 //! | `ecs/canopy_wind` | [`WindInTrees`]: the wind at a place, among the trees about it. |
 //! | `ecs/listen`, `ecs/colliders` | They tell listeners, and give colliders about the viewers. |
 //! | `ecs/picking` | With the feature `picking`: trees under pointers. |
 //! | `ecs/avian` | With the feature `avian`: static bodies. |
 //!
-//! The bodies that rays meet are in [`tree::body`](crate::tree::body).
+//! The bodies that rays meet are in [`tree::body`](crate::tree::body), and who stands where in [`TreePlaces`](crate::tree::TreePlaces).
 
 mod components;
 mod ecs;
-mod grid;
 mod passage;
 mod plugin;
 mod rustle;
@@ -29,7 +26,6 @@ pub use ecs::avian::TreeAvianPlugin;
 pub use ecs::picking::TreePickingPlugin;
 pub use ecs::{
     canopy_wind::{WindAt, WindInTrees},
-    places::TreePlaces,
     rays::{CrownHit, TreeHit, TreeRays, TreeTrace},
 };
 pub use plugin::TreeQueryPlugin;

@@ -5,7 +5,6 @@ use super::{
     ecs::{
         colliders::give_colliders,
         listen::tell_listeners,
-        places::{TreePlaces, track_trees},
         rays::{PosedTrees, forget_poses},
     },
 };
@@ -14,6 +13,7 @@ use crate::{
     schedule::{WindwoodSystems, configure_sets},
     sway::SwayPlugin,
     timing::timed,
+    tree::track_trees,
     viewpoint::give_cameras_viewpoints,
 };
 use bevy::prelude::*;
@@ -29,12 +29,11 @@ impl Plugin for TreeQueryPlugin {
         app.register_type::<WindListener>()
             .register_type::<TreeColliderSettings>()
             .init_resource::<TreeColliderSettings>()
-            .init_resource::<TreePlaces>()
             .init_resource::<PosedTrees>();
-        let query = timed!(app, track_trees, forget_poses, tell_listeners);
+        let query = timed!(app, forget_poses, tell_listeners);
         let give = timed!(app, give_colliders);
         app.add_systems(PreUpdate, forget_poses.after(WindwoodSystems::AdvanceWind))
             .add_systems(Update, give.in_set(WindwoodSystems::Stream))
-            .add_systems(PostUpdate, query.chain().in_set(WindwoodSystems::Query));
+            .add_systems(PostUpdate, query.chain().after(track_trees).in_set(WindwoodSystems::Query));
     }
 }

@@ -47,7 +47,7 @@ use crate::{
     schedule::{WindwoodSystems, configure_sets},
     sway::ActiveSway,
     timing::timed,
-    tree::store_baked_models,
+    tree::regrow_trees,
     viewpoint::give_cameras_viewpoints,
 };
 use bevy::{camera::visibility::VisibilitySystems, pbr::MaterialPlugin, prelude::*};
@@ -128,10 +128,10 @@ impl Plugin for TreeRenderPlugin {
         app.add_systems(
             Update,
             (
-                prepare.chain().after(store_baked_models).in_set(WindwoodSystems::Bake).run_if(can_draw),
+                prepare.chain().after(regrow_trees).in_set(WindwoodSystems::Bake).run_if(can_draw),
                 draw.chain().in_set(WindwoodSystems::SelectLod).run_if(can_draw),
                 light,
-                pack.before(WindwoodSystems::SelectLod),
+                pack.after(update_wind_exposure).before(WindwoodSystems::SelectLod),
             ),
         )
         .add_systems(

@@ -5,8 +5,8 @@ use super::{
     articulated::{articulate_trees, pose_beams, pose_trees, turn_leaves},
     components::InCanopy,
     live::{
-        LiveSettings, Pusher, PusherShape, Pushers, TreeImpulse, TreeIndex, forget_tree, gather_pushers, has_cause,
-        index_trees, rest_live_trees, step_live_trees, wake_trees,
+        LiveSettings, Pusher, PusherShape, Pushers, TreeImpulse, gather_pushers, has_cause, rest_live_trees,
+        step_live_trees, wake_trees,
     },
     response::SwaySettings,
 };
@@ -36,16 +36,14 @@ impl Plugin for SwayPlugin {
             .init_resource::<ActiveSway>()
             .init_resource::<LiveSettings>()
             .init_resource::<Pushers>()
-            .init_resource::<TreeIndex>()
             .add_message::<TreeImpulse>()
-            .add_observer(forget_tree)
             .configure_sets(PostUpdate, WindwoodSystems::Pose.run_if(is_windy));
         // Each new wind waits for its tables, so that trees and whatever else is in the wind change together.
         app.world_mut().resource_mut::<ActiveWind>().hold_incoming();
         let tables = timed!(app, rebuild_tables, finish_tables, follow_wind);
         let articulate = timed!(app, articulate_trees);
         let gather = timed!(app, gather_pushers);
-        let wake = timed!(app, index_trees, wake_trees);
+        let wake = timed!(app, wake_trees);
         let live = timed!(app, step_live_trees, rest_live_trees);
         let pose_trees = timed!(app, pose_trees);
         let pose_parts = timed!(app, pose_beams, turn_leaves);
@@ -53,7 +51,7 @@ impl Plugin for SwayPlugin {
             .add_systems(Update, articulate.after(WindwoodSystems::Bake))
             .add_systems(
                 PostUpdate,
-                (gather, wake.chain().run_if(has_cause), live.chain(), pose_trees, pose_parts)
+                (gather, wake.run_if(has_cause), live.chain(), pose_trees, pose_parts)
                     .chain()
                     .in_set(WindwoodSystems::Pose),
             );

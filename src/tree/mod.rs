@@ -27,6 +27,8 @@
 //! `ecs/species_models.rs` bakes in the background and stores the models in [`SpeciesModels`]. `ecs/grow_trees.rs` gives
 //! each [`Tree`] its variant as a [`Grown`] component. What draws and moves trees starts from there.
 //! `ecs/missing_species.rs` tells which trees wait for a species that cannot be loaded. [`Season`] is the time of the year.
+//!
+//! [`TreePlaces`] knows who stands where, on the grid of `place_grid.rs`: for all who ask what is near, or on the way of a ray.
 
 pub mod bark;
 pub mod body;
@@ -49,6 +51,7 @@ mod leaf_season;
 pub mod mechanics;
 mod model;
 pub mod phenology;
+mod place_grid;
 mod plugin;
 pub mod recolour;
 pub mod skeleton;
@@ -62,8 +65,9 @@ mod wood_mesh;
 pub(crate) use bounds::PressureStep;
 pub use bounds::SwayBounds;
 pub use components::{Articulated, Beam, BeamOf, Grown, Leaf, LeafOf, Tree, TreeBeams, TreeLeaves};
-pub(crate) use ecs::{missing_species::ReportedSpecies, species_models::no_longer_used};
+pub(crate) use ecs::{missing_species::ReportedSpecies, places::track_trees, species_models::no_longer_used};
 pub use ecs::{
+    places::TreePlaces,
     season::Season,
     species_models::{BakedSpecies, BakedStage, SpeciesBaked, SpeciesModels, bake_variants},
 };
@@ -79,7 +83,7 @@ pub(crate) use wood_mesh::coarse_wood;
 #[cfg(all(test, feature = "render"))]
 pub(crate) use bounds::MOST_ENLARGED;
 #[cfg(feature = "render")]
-pub(crate) use ecs::species_models::store_baked_models;
+pub(crate) use ecs::grow_trees::regrow_trees;
 
 #[cfg(test)]
 mod tests;

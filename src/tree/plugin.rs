@@ -5,6 +5,7 @@ use super::{
     ecs::{
         grow_trees::{grow_trees, is_time_to_search, regrow_trees},
         missing_species::{MissingSpecies, ReportedSpecies, report_missing_species},
+        places::{TreePlaces, forget_tree, track_trees},
         season::Season,
         species_models::{SpeciesBaked, SpeciesModels, store_baked_models, update_species},
     },
@@ -38,10 +39,14 @@ impl Plugin for TreePlugin {
             .init_resource::<Season>()
             .init_resource::<SpeciesModels>()
             .init_resource::<ReportedSpecies>()
+            .init_resource::<TreePlaces>()
             .add_message::<SpeciesBaked>()
-            .add_message::<MissingSpecies>();
+            .add_message::<MissingSpecies>()
+            .add_observer(forget_tree);
         let grow = timed!(app, update_species, store_baked_models, grow_trees, report_missing_species);
         let regrow = timed!(app, regrow_trees).run_if(is_time_to_search);
-        app.add_systems(Update, (grow.chain(), regrow).chain().in_set(WindwoodSystems::Bake));
+        let track = timed!(app, track_trees);
+        app.add_systems(Update, (grow.chain(), regrow).chain().in_set(WindwoodSystems::Bake))
+            .add_systems(PostUpdate, track.in_set(WindwoodSystems::Query));
     }
 }

@@ -7,12 +7,11 @@ use super::{
 use bevy::{ecs::system::RunSystemOnce, prelude::*};
 use bevy_windwood::{
     prelude::*,
-    query::TreePlaces,
     scatter::{
         ForestPlan,
         plan::{Area, Shape, Stock},
     },
-    tree::SpeciesModels,
+    tree::{SpeciesModels, TreePlaces},
 };
 use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use std::{fs, time::Duration};

@@ -17,6 +17,8 @@ use std::time::Duration;
 /// Frame of the game, s.
 const FRAME_S: f32 = 0.1;
 const SIZE: (u32, u32) = (64, 36);
+/// One of so many frames is drawn: that takes a hundred times as long as all else.
+const DRAWN_EVERY: u32 = 10;
 /// Trees of the game's own, at most.
 const MOST_TREES: usize = 12;
 /// Half the side of the forest, m.
@@ -91,11 +93,13 @@ impl Game {
     /// Plays for so long, s of the game's time.
     pub fn play(&mut self, seconds: f32) {
         self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(FRAME_S)));
-        for _ in 0..(seconds / FRAME_S).round() as u32 {
+        for frame in 0..(seconds / FRAME_S).round() as u32 {
             self.walk();
             self.act();
-            self.app.update();
+            self.switch_camera(frame.is_multiple_of(DRAWN_EVERY));
+            capture::step(&mut self.app);
         }
+        self.switch_camera(false);
         self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     }
 
@@ -186,7 +190,7 @@ impl Game {
         self.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO));
     }
 
-    /// Draws some frames, so that all is on the device. In all others the camera is switched off: to draw takes a hundred times as long as all else.
+    /// Draws some frames, so that all is on the device.
     fn draw(&mut self) {
         self.switch_camera(true);
         (0..6).for_each(|_| capture::step(&mut self.app));

@@ -1,11 +1,11 @@
 //! The wind at a place among trees.
 
-use super::places::TreePlaces;
 use crate::{
     dynamics::stand_wind::StandWind,
     query::rustle::nearness,
     sway::{ActiveSway, InCanopy, WeightedResponse, WindResponse},
-    wind::{ActiveWind, WindClock},
+    tree::TreePlaces,
+    wind::{ActiveWind, WindClock, WindSources},
 };
 use bevy::{ecs::system::SystemParam, prelude::*};
 
@@ -17,12 +17,14 @@ const OPEN_SHARE: f32 = 0.02;
 /// Asks for the wind at a place: among trees it is weaker than in the open, and gustier. For sails, clothes, smoke and sound.
 ///
 /// The stands of the trees within 16 m count, the nearer the more ([`InCanopy`]): over ground that is told the answer is continuous.
-/// Where there are none it is what [`ActiveWind::sample`] says.
+/// Where there are none it is what [`ActiveWind::sample`] says. What [`WindSource`](crate::wind::WindSource)s blow is added as it is: trees
+/// do not shelter from it.
 #[derive(SystemParam)]
 pub struct WindInTrees<'w, 's> {
     wind: Res<'w, ActiveWind>,
     sway: Res<'w, ActiveSway>,
     clock: Res<'w, WindClock>,
+    sources: Res<'w, WindSources>,
     places: Res<'w, TreePlaces>,
     canopies: Query<'w, 's, (&'static GlobalTransform, Option<&'static InCanopy>)>,
 }
@@ -30,11 +32,11 @@ pub struct WindInTrees<'w, 's> {
 /// The wind at a place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WindAt {
-    /// Now, m/s in world axes.
+    /// Now, with what sources blow, m/s in world axes.
     pub velocity: Vec3,
-    /// The mean speed, m/s.
+    /// The mean speed, without sources, m/s.
     pub mean_m_s: f32,
-    /// Standard deviation of gusts along the wind, m/s.
+    /// Standard deviation of gusts along the wind, without sources, m/s.
     pub deviation_m_s: f32,
 }
 
@@ -54,31 +56,38 @@ impl WindInTrees<'_, '_> {
         if !place.is_finite() {
             return WindAt::default();
         }
-        let mut trees: Vec<(f32, InCanopy)> = Vec::new();
-        let (mut nearest_m, mut foot_m) = (f32::INFINITY, 0.0);
-        self.places.within(place.xz(), SHELTER_M, |tree, distance_m| {
-            let Ok((at, canopy)) = self.canopies.get(tree) else { return };
+        let (mut nearest_m, mut foot_m, mut whole) = (f32::INFINITY, 0.0, OPEN_SHARE);
+        self.trees_about(place, |distance_m, at, _| {
             if distance_m < nearest_m {
                 (nearest_m, foot_m) = (distance_m, at.translation().y);
             }
-            trees.push((nearness(distance_m, SHELTER_M), canopy.copied().unwrap_or_default()));
+            whole += nearness(distance_m, SHELTER_M);
         });
         let height_m = place.y - ground_m.unwrap_or(foot_m);
-        let whole = OPEN_SHARE + trees.iter().map(|(near, _)| near).sum::<f32>();
         let mut sum = WindAt::default();
         for WeightedResponse { response, weight } in self.sway.now() {
             let table = response.table.velocity(&response.place(place, self.clock.time_s));
             let open = self.open(response, place, height_m);
             sum.add(weight * OPEN_SHARE / whole, open);
-            for (near, InCanopy(canopy)) in &trees {
-                let stand = in_stand(response, &response.stand_wind(canopy), height_m, table);
-                sum.add(weight * near / whole, stand);
-            }
+            self.trees_about(place, |distance_m, _, InCanopy(canopy)| {
+                let stand = in_stand(response, &response.stand_wind(&canopy), height_m, table);
+                sum.add(weight * nearness(distance_m, SHELTER_M) / whole, stand);
+            });
         }
         if self.sway.now().next().is_none() {
             sum.velocity = self.wind.sample(place.with_y(height_m), self.clock.time_s);
         }
+        sum.velocity += self.sources.velocity(place);
         sum
+    }
+
+    /// Visits the trees that shelter a place: their distance on the map, m, and where and in what stand they stand.
+    fn trees_about(&self, place: Vec3, mut visit: impl FnMut(f32, &GlobalTransform, InCanopy)) {
+        self.places.within(place.xz(), SHELTER_M, |tree, distance_m| {
+            if let Ok((at, canopy)) = self.canopies.get(tree) {
+                visit(distance_m, at, canopy.copied().unwrap_or_default());
+            }
+        });
     }
 
     /// Speed of the wind in a tree's crown at a height above its foot, m/s.
@@ -87,7 +96,7 @@ impl WindInTrees<'_, '_> {
             let table = response.table.velocity(&response.place(foot, self.clock.time_s));
             weight * in_stand(response, &response.stand_wind(&canopy.0), height_m, table).velocity
         });
-        winds.sum::<Vec3>().length()
+        (winds.sum::<Vec3>() + self.sources.velocity(foot + Vec3::Y * height_m)).length()
     }
 
     fn open(&self, response: &WindResponse, place: Vec3, height_m: f32) -> WindAt {

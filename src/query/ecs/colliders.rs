@@ -1,10 +1,9 @@
 //! Gives trees about the viewers their colliders.
 
-use super::places::TreePlaces;
 use crate::{
     query::components::{TreeColliderSettings, TreeColliders},
     setting::valid_or_last,
-    tree::{Grown, TreeModel},
+    tree::{Grown, TreeModel, TreePlaces},
     viewpoint::Viewpoints,
 };
 use bevy::prelude::*;

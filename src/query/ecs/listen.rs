@@ -1,13 +1,13 @@
 //! Tells listeners of gusts, and of leaves that rustle.
 
-use super::{canopy_wind::WindInTrees, places::TreePlaces};
+use super::canopy_wind::WindInTrees;
 use crate::{
     query::{
         components::WindListener,
         rustle::{Follow, LeafSound, gust_share, level_db, share_of_level, speed_m_s},
     },
     sway::InCanopy,
-    tree::{Grown, Season, SpeciesModels, Tree, TreeModel},
+    tree::{Grown, Season, SpeciesModels, Tree, TreeModel, TreePlaces},
     wind::WindClock,
 };
 use bevy::{ecs::system::SystemParam, prelude::*};

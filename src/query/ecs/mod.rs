@@ -7,5 +7,4 @@ pub(super) mod colliders;
 pub(super) mod listen;
 #[cfg(feature = "picking")]
 pub(super) mod picking;
-pub(super) mod places;
 pub(super) mod rays;

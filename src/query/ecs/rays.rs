@@ -1,12 +1,11 @@
 //! Rays against trees, as they are posed in the wind.
 
-use super::places::TreePlaces;
 use crate::{
     dynamics::pose::{BeamPose, TreeInWind},
     query::passage::{LocalRay, Passed, depth_until},
     sway::{ActiveSway, InCanopy, TreePose, WeightedResponse, uniform_scale, world_from_local},
     tree::{
-        Grown, Season, Tree, TreeModel,
+        Grown, Season, Tree, TreeModel, TreePlaces,
         body::{PosedBody, TreeCapsule},
     },
     wind::WindClock,
@@ -166,7 +165,7 @@ impl TreeRays<'_, '_> {
     ) -> Option<TreeHit> {
         let longest_m = if longest_m > 0.0 { longest_m } else { 0.0 };
         let mut first: Option<TreeHit> = None;
-        self.places.grid.along(origin, *direction, longest_m, |tree, _, met_m| {
+        self.places.along(origin, *direction, longest_m, |tree, met_m| {
             let end_m = first.map_or(longest_m, |hit| hit.distance_m);
             if met_m > end_m {
                 return false;

@@ -61,14 +61,16 @@ pub(crate) fn redraw_waiting_trees(
         let Ok((tree, instance, selection, mut drawn)) = trees.get_mut(*tree) else { return false };
         let species = tree.species.id();
         let is_bare = library.is_bare(species, season.wrapped() + tree.season_shift());
-        let Some(variant) = library.variant_mut(species, instance.model) else { return false };
+        let Some(variant) = library.variant(species, instance.model) else { return false };
         let DrawnLevels { is_complete, .. } = DrawnLevels::of(variant, selection, is_bare);
         if is_complete {
             drawn.selection = None;
             return false;
         }
-        let next = variant.parts_of(selection.lod + u8::from(selection.is_fading), is_bare);
-        variant.demand.want(variant.parts_of(selection.lod, is_bare).and(next));
+        let next = selection.lod + u8::from(selection.is_fading);
+        library.want(species, instance.model, |variant| {
+            variant.parts_of(selection.lod, is_bare).and(variant.parts_of(next, is_bare))
+        });
         true
     });
 }

@@ -64,16 +64,23 @@ impl LiveUploads {
         Some(released.row)
     }
 
-    /// The rows of a tree; whether they are new.
-    fn range(&mut self, tree: Entity, row: u32, rows: u32) -> Option<(u32, bool)> {
-        if let Some(there) = self.trees.get(&tree).filter(|there| (there.row, there.rows) == (row, rows)) {
-            return Some((there.range.offset, false));
+    /// The first of the rows that a tree has: the same ones as long as it has the same row and as many beams.
+    fn first_row(&self, tree: Entity, row: u32, sway: &LiveSway) -> Option<u32> {
+        let there = self.trees.get(&tree).filter(|there| (there.row, there.rows) == (row, rows_of(sway)))?;
+        Some(there.range.offset)
+    }
+
+    /// Gives rows to a tree that has none, as long as there are any. The first of them.
+    fn give_rows(&mut self, tree: Entity, row: u32, sway: &LiveSway) -> Option<u32> {
+        if self.first_row(tree, row, sway).is_some() {
+            return None;
         }
         self.release(tree);
+        let rows = rows_of(sway);
         let range = self.ranges.allocate(rows)?;
         self.end = self.end.max(range.offset + rows);
         self.trees.insert(tree, LiveRange { row, rows, range });
-        Some((range.offset, true))
+        Some(range.offset)
     }
 
     fn write(&mut self, first: u32, angles: impl Iterator<Item = Vec3A>, wind: WindAtTree) {
@@ -106,16 +113,12 @@ pub(crate) fn upload_live_trees(
     }
     live.is_first_half = !live.is_first_half;
     let mut has_new = false;
-    let mut awake: Vec<(u32, &LiveSway)> = Vec::new();
     for (entity, instance, sway) in &trees {
-        // One with another model than is drawn waits for that.
-        let Some(row) = instance.row.filter(|row| tables.beams_of(*row) as usize == sway.len()) else { continue };
-        let Some((first, is_new)) = live.range(entity, row, sway.len() as u32 + 2) else { continue };
-        if is_new {
+        let Some(row) = drawn_row(tables, instance, sway) else { continue };
+        if let Some(first) = live.give_rows(entity, row, sway) {
             tables.write_live(row, Some(first));
             has_new = true;
         }
-        awake.push((first, sway));
     }
     if live.end > live.capacity {
         live.capacity = with_reserve(live.end);
@@ -123,12 +126,31 @@ pub(crate) fn upload_live_trees(
     }
     live.rows.resize(live.end as usize, [0.0; 4]);
     let [now, before] = live.halves();
+    let first_of = |live: &LiveUploads, tree, instance, sway| {
+        drawn_row(tables, instance, sway).and_then(|row| live.first_row(tree, row, sway))
+    };
     if has_new {
-        awake.iter().for_each(|(first, sway)| live.write(*first, sway.angles_before(), sway.wind_before()));
+        for (entity, instance, sway) in &trees {
+            let Some(first) = first_of(live, entity, instance, sway) else { continue };
+            live.write(first, sway.angles_before(), sway.wind_before());
+        }
         live.upload(&mut uploads, before);
     }
-    awake.iter().for_each(|(first, sway)| live.write(*first, sway.angles(), sway.wind()));
+    for (entity, instance, sway) in &trees {
+        let Some(first) = first_of(live, entity, instance, sway) else { continue };
+        live.write(first, sway.angles(), sway.wind());
+    }
     live.upload(&mut uploads, now);
+}
+
+/// The row of a tree that is drawn with the model whose beams are awake. One that is drawn with another waits for that.
+fn drawn_row(tables: &InstanceTables, instance: &TreeInstance, sway: &LiveSway) -> Option<u32> {
+    instance.row.filter(|row| tables.beams_of(*row) as usize == sway.len())
+}
+
+/// A tree has a row a beam, and two with the wind.
+fn rows_of(sway: &LiveSway) -> u32 {
+    sway.len() as u32 + 2
 }
 
 impl LiveUploads {

@@ -34,6 +34,7 @@ use bevy::{
     render::storage::ShaderBuffer,
     tasks::{AsyncComputeTaskPool, Task, block_on, poll_once},
 };
+use bytemuck::Zeroable;
 use std::sync::Arc;
 
 /// What was uploaded so far.
@@ -240,7 +241,7 @@ fn frame_row(
         fade_lag: FADE_LAG,
         viewer_count: 0,
         shadow_end: viewers.thresholds.shadow_end,
-        ..FrameRow::default()
+        ..FrameRow::zeroed()
     };
     for (place, viewer) in row.viewers.iter_mut().zip(viewers.iter()) {
         *place = viewer.eye.extend(viewer.factor()).to_array();

@@ -76,10 +76,11 @@ impl Assigner<'_, '_> {
         let (species, model) = (tree.species.id(), grown.model.id());
         let library = self.library.bypass_change_detection();
         let there = library.variant(species, former.model).map(PreparedVariant::parts_there);
-        let (Some(there), Some(next)) = (there, library.variant_mut(species, model)) else { return true };
+        let (Some(there), Some(next)) = (there, library.variant(species, model)) else { return true };
         let wanted = next.all_parts().common(there);
-        next.demand.want(wanted);
-        next.parts_there().contains(wanted)
+        let is_there = next.parts_there().contains(wanted);
+        library.want(species, model, |_| wanted);
+        is_there
     }
 
     /// Gives a tree an instance, if its model is prepared. Returns whether it was. The row of an instance that it had before is freed

@@ -53,7 +53,7 @@ pub(crate) fn sway_vectors(in_leaf: &BeamSway, bare: &BeamSway) -> [[f32; 4]; 3]
 
 /// `Frame` of the shader: the values of one frame.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct FrameRow {
     /// Now and one frame ago, s, each wrapped into the periods of slot A and slot B: a now, b now, a before, b before.
     pub time_s: [f32; 4],
@@ -83,15 +83,17 @@ pub(crate) struct FrameRow {
     /// First row of this frame's half of what is added to trees that are awake, and of the last frame's.
     pub live_now: u32,
     pub live_before: u32,
-    /// Of `sources` and of `pushers`, those that are set: now and one frame ago.
+    /// Of `sources`, `pushers` and `trails`, those that are set: now and one frame ago.
     pub source_counts: [u32; 2],
     pub pusher_counts: [u32; 2],
-    pub padding: [u32; 2],
+    pub trail_counts: [u32; 2],
     /// The cameras: place, and the factor of [`LodViewer::factor`](crate::render::lod::viewers::LodViewer::factor).
     pub viewers: [[f32; 4]; MAX_VIEWERS],
     /// What a game blows and pushes: rows of now, then those of one frame ago.
     pub sources: [SourceRow; 2 * MOST_SOURCES],
     pub pushers: [PusherRow; 2 * MOST_PUSHERS],
+    /// Where these were in the last moments.
+    pub trails: [TrailRow; 2 * MOST_TRAILS],
 }
 
 /// `SourceRow` of the shader: a [`SourceFlow`](crate::wind::SourceFlow).
@@ -104,9 +106,17 @@ pub(crate) struct SourceRow(pub [[f32; 4]; 3]);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct PusherRow(pub [[f32; 4]; 2]);
 
+/// `TrailRow` of the shader: both ends of a capsule where a stretch of its way begins, with its radius and how long ago that was, and where it
+/// ends, with how long ago that was.
+#[repr(transparent)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct TrailRow(pub [[f32; 4]; 4]);
+
 /// Sources and pushers that grass and fires feel at once.
 pub(crate) const MOST_SOURCES: usize = 16;
 pub(crate) const MOST_PUSHERS: usize = 16;
+/// Stretches of the ways of pushers on which grass swings back: a walker has ten.
+pub(crate) const MOST_TRAILS: usize = 64;
 
 /// `TreeRow` of the shader: one tree. A row without beams is unused, or that of a tree without poses, which stands at rest.
 #[repr(C)]

@@ -54,7 +54,7 @@ pub(crate) fn want_parts(
     let Round { due, per_frame, frames } = &mut *round;
     *frames += 1;
     if due.is_empty() && *frames > ROUND_FRAMES {
-        library.variants_mut().for_each(|(_, _, variant)| variant.end_round());
+        library.variants_mut().for_each(PreparedVariant::end_round);
         due.extend(&all);
         *per_frame = due.len().div_ceil(ROUND_FRAMES).max(LOOKED_AT_PER_FRAME);
         *frames = 0;
@@ -65,9 +65,7 @@ pub(crate) fn want_parts(
         let is_bare = library.is_bare(species, season.wrapped() + tree.season_shift());
         let ahead = nearer(viewers.distance(at.translation()), AHEAD_M);
         let soon = select_at(ahead, &viewers.thresholds, instance, at, impostor, None);
-        if let Some(variant) = library.variant_mut(species, instance.model) {
-            variant.demand.want(wanted(variant, &soon, selection, is_bare));
-        }
+        library.want(species, instance.model, |variant| wanted(variant, &soon, selection, is_bare));
     }
 }
 

@@ -17,6 +17,8 @@ use std::sync::Arc;
 #[derive(Resource, Default)]
 pub(crate) struct SpeciesLibrary {
     pub(super) species: HashMap<AssetId<Species>, PreparedSpecies>,
+    /// Variants of which meshes are wanted that are not there, in the order in which they were asked for.
+    pub(super) asked: Vec<(AssetId<Species>, AssetId<TreeModel>)>,
 }
 
 /// A species that is ready to be drawn.
@@ -166,12 +168,23 @@ impl SpeciesLibrary {
         self.species.get_mut(&species)?.variants.get_mut(&model)
     }
 
-    /// All variants of all species.
-    pub fn variants_mut(
+    /// A tree wants meshes of a variant, now or soon. Those that are not there will be made.
+    pub fn want(
         &mut self,
-    ) -> impl Iterator<Item = (AssetId<Species>, AssetId<TreeModel>, &mut PreparedVariant)> {
-        let species = self.species.iter_mut();
-        species.flat_map(|(id, prepared)| prepared.variants.iter_mut().map(|(model, variant)| (*id, *model, variant)))
+        species: AssetId<Species>,
+        model: AssetId<TreeModel>,
+        parts: impl FnOnce(&PreparedVariant) -> PartSet,
+    ) {
+        let Some(variant) = self.variant_mut(species, model) else { return };
+        let (parts, there) = (parts(variant).common(variant.all_parts()), variant.parts_there());
+        if variant.demand.want(parts, there) {
+            self.asked.push((species, model));
+        }
+    }
+
+    /// All variants of all species.
+    pub fn variants_mut(&mut self) -> impl Iterator<Item = &mut PreparedVariant> {
+        self.species.values_mut().flat_map(|prepared| prepared.variants.values_mut())
     }
 
     /// Whether a tree of a species has no leaves at that time of its year.

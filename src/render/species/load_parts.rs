@@ -35,20 +35,20 @@ struct PartLoad {
     task: Work<Vec<(usize, LodMeshes)>>,
 }
 
-/// Starts to make what trees want and is not there.
+/// Starts to make what trees have asked for.
 pub(crate) fn start_loading_parts(
     mut library: ResMut<SpeciesLibrary>,
     mut loads: ResMut<PartLoads>,
     models: Res<Assets<TreeModel>>,
 ) {
-    for (species, id, variant) in library.bypass_change_detection().variants_mut() {
-        if !variant.demand.is_wanted() {
-            continue;
-        }
-        let Some(model) = models.get(id) else { continue };
+    let SpeciesLibrary { species: all, asked } = library.bypass_change_detection();
+    asked.retain(|(species, id)| {
+        let variant = all.get_mut(species).and_then(|prepared| prepared.variants.get_mut(id));
+        let Some(variant) = variant else { return false };
+        let Some(model) = models.get(*id) else { return true };
         let parts = variant.demand.start(variant.parts_there(), variant.all_parts());
         if parts.is_empty() {
-            continue;
+            return false;
         }
         let model = model.clone();
         let recipe = variant.recipe.clone();
@@ -57,8 +57,9 @@ pub(crate) fn start_loading_parts(
             let levels = (0..MOST_LEVELS).filter(|level| parts.has_level(*level));
             levels.map(|level| (level, remade_level(&own, &model, level, parts))).collect::<Vec<_>>()
         });
-        loads.0.push(PartLoad { species, model: id, recipe, parts, task });
-    }
+        loads.0.push(PartLoad { species: *species, model: *id, recipe, parts, task });
+        false
+    });
 }
 
 /// Takes over what has been made, so much a frame.

@@ -13,23 +13,24 @@ pub(crate) struct PartDemand {
     wanted: PartSet,
     /// Parts that are being made.
     coming: PartSet,
+    /// Whether something is wanted that has not been started.
+    is_asked: bool,
     /// Rounds since a part was wanted.
     idle_rounds: [u8; MOST_PARTS],
 }
 
 impl PartDemand {
-    /// A tree wants parts, now or soon.
-    pub fn want(&mut self, parts: PartSet) {
+    /// A tree wants parts, now or soon. Whether something has to be made for it, beside what is there, for which nobody has asked.
+    pub fn want(&mut self, parts: PartSet, there: PartSet) -> bool {
         self.wanted = self.wanted.and(parts);
-    }
-
-    /// Whether anything was wanted in this round.
-    pub fn is_wanted(&self) -> bool {
-        !self.wanted.is_empty()
+        let is_new = !self.is_asked && !parts.without(there).without(self.coming).is_empty();
+        self.is_asked |= is_new;
+        is_new
     }
 
     /// What has to be made, of all that there is, beside what is there: once.
     pub fn start(&mut self, there: PartSet, all: PartSet) -> PartSet {
+        self.is_asked = false;
         let due = self.wanted.common(all).without(there).without(self.coming);
         self.coming = self.coming.and(due);
         due
@@ -63,23 +64,26 @@ mod tests {
     #[test]
     fn a_part_is_made_once_and_freed_after_a_while_without_demand() {
         let (mut demand, mut there) = (PartDemand::default(), PartSet::in_leaf(2));
-        let all = PartSet::ALL.without(PartSet::one(0, LevelPart::BareWood));
-        let finest = PartSet::in_leaf(0);
-        demand.want(PartSet::ALL.common(finest.and(PartSet::one(0, LevelPart::BareWood))));
+        let bare_wood = PartSet::one(0, LevelPart::BareWood);
+        let (all, finest) = (PartSet::ALL.without(bare_wood), PartSet::in_leaf(0));
+        assert!(!demand.want(there, there), "it is there");
+        assert!(demand.want(finest.and(bare_wood), there));
+        assert!(!demand.want(finest, there), "somebody has asked");
         assert_eq!(demand.start(there, all), finest, "there is no other wood of the bare tree");
         assert_eq!(demand.start(there, all), PartSet::EMPTY, "it is coming");
+        assert!(!demand.want(finest, there), "it is coming");
         demand.finish(finest);
         there = there.and(finest);
         assert_eq!(demand.start(there, all), PartSet::EMPTY, "it is there");
         for _ in 0..3 * ROUNDS_KEPT {
-            demand.want(finest);
+            assert!(!demand.want(finest, there));
             assert!(demand.end_round(there).common(finest).is_empty(), "a tree wants it");
         }
         for round in 1..=ROUNDS_KEPT {
             assert_eq!(demand.end_round(there).contains(finest), round == ROUNDS_KEPT, "round {round}");
         }
         there = there.without(finest);
-        demand.want(finest);
+        assert!(demand.want(finest, there));
         assert_eq!(demand.start(there, all), finest, "it comes back");
     }
 }

@@ -5,15 +5,15 @@
 //! in one with a cause only the trees of the cells about it.
 //!
 //! - `settings` ([`LiveSettings`]), `components` ([`LiveSway`]), `pusher` ([`Pusher`]), `impulse` ([`TreeImpulse`]).
-//! - `index` knows where trees stand, cell by cell.
-//! - `wake` finds the trees that are touched, `step` carries them on, and lets them sleep.
+//! - `wake` finds the trees that are touched, `step` carries them on, and lets them sleep. [`TreePlaces`](crate::tree::TreePlaces) knows where
+//!   trees stand.
 
 mod components;
 mod impulse;
-mod index;
 mod pusher;
 mod settings;
 mod step;
+mod trail;
 mod wake;
 
 pub use components::LiveSway;
@@ -21,7 +21,6 @@ pub use impulse::TreeImpulse;
 pub use pusher::{Pusher, PusherShape, Pushers};
 pub use settings::LiveSettings;
 
-pub(super) use index::{TreeIndex, forget_tree, index_trees};
 pub(super) use pusher::gather_pushers;
 pub(super) use step::{rest_live_trees, step_live_trees};
 pub(super) use wake::{has_cause, wake_trees};

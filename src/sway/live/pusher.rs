@@ -1,12 +1,14 @@
 //! Bodies that push branches and grass aside.
 
+use super::trail::{TrailPiece, Trails};
 use crate::{
     dynamics::Capsule,
     setting::{SettingError, require},
+    wind::WindClock,
 };
 use bevy::prelude::*;
 
-/// Pushes grass, shrubs and low branches out of the way of this entity: a walker, a ball, a wheel.
+/// Pushes grass, shrubs and low branches out of the way of this entity: a walker, a ball, a wheel. What it leaves swings back.
 ///
 /// Branches are bent so far that they lie beside the body, but not farther than its force bends them. A pusher with a value out of range
 /// pushes nothing, and is told of once.
@@ -79,6 +81,8 @@ impl Pusher {
 pub struct Pushers {
     now: Vec<PushingBody>,
     before: Vec<PushingBody>,
+    trail: Vec<TrailPiece>,
+    trail_before: Vec<TrailPiece>,
 }
 
 /// A body that pushes.
@@ -99,18 +103,32 @@ impl Pushers {
     pub(crate) fn before(&self) -> &[PushingBody] {
         &self.before
     }
+
+    /// Where they were in the last moments, up to where they are.
+    #[cfg(feature = "render")]
+    pub(crate) fn trail(&self) -> &[TrailPiece] {
+        &self.trail
+    }
+
+    /// The same one frame ago.
+    #[cfg(feature = "render")]
+    pub(crate) fn trail_before(&self) -> &[TrailPiece] {
+        &self.trail_before
+    }
 }
 
 /// Finds out where the pushers are.
 pub(in crate::sway) fn gather_pushers(
     mut refused: Local<Vec<Entity>>,
+    (mut pushing, mut trails): (Local<Vec<(Entity, PushingBody)>>, Local<Trails>),
+    clock: Res<WindClock>,
     mut bodies: ResMut<Pushers>,
     pushers: Query<(Entity, Ref<Pusher>, &Transform, Option<&GlobalTransform>, Has<ChildOf>)>,
 ) {
     let bodies = bodies.bypass_change_detection();
     std::mem::swap(&mut bodies.now, &mut bodies.before);
+    std::mem::swap(&mut bodies.trail, &mut bodies.trail_before);
     bodies.now.clear();
-    let mut pushing: Vec<(Entity, PushingBody)> = Vec::new();
     for (entity, pusher, transform, global, is_child) in &pushers {
         if pusher.is_changed() {
             refused.retain(|other| *other != entity);
@@ -131,7 +149,9 @@ pub(in crate::sway) fn gather_pushers(
         }
     }
     pushing.sort_unstable_by_key(|(entity, _)| *entity);
-    bodies.now.extend(pushing.into_iter().map(|(_, body)| body));
+    let frame_s = (clock.time_s - clock.previous_s) as f32;
+    trails.follow(pushing.iter().map(|(entity, body)| (*entity, body.capsule)), frame_s, &mut bodies.trail);
+    bodies.now.extend(pushing.drain(..).map(|(_, body)| body));
 }
 
 #[cfg(test)]
@@ -143,6 +163,7 @@ mod tests {
     fn bodies_are_where_their_entities_are_and_odd_ones_are_left_out() {
         let mut world = World::new();
         world.init_resource::<Pushers>();
+        world.init_resource::<WindClock>();
         let lying =
             Transform::from_xyz(1.0, 2.0, 3.0).with_rotation(Quat::from_rotation_z(-std::f32::consts::FRAC_PI_2));
         world.spawn((Pusher::default(), lying));

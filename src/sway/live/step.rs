@@ -96,7 +96,8 @@ impl Lookups {
 
 /// A tree, and the flows that reach it.
 struct TreeInFlows<'a> {
-    flows: Vec<&'a SourceFlow>,
+    /// All that there are.
+    sources: &'a [SourceFlow],
     stands: GlobalTransform,
     local_from_world: Mat3,
     scale: f32,
@@ -111,9 +112,13 @@ impl<'a> TreeInFlows<'a> {
         let scale = uniform_scale(&stands);
         let middle = stands.transform_point(0.5 * (model.bounds.min + model.bounds.max));
         let radius_m = 0.5 * scale * (model.bounds.max - model.bounds.min).length();
-        let reaches = |flow: &&SourceFlow| flow.place.distance(middle) < flow.reach_m + radius_m;
-        let flows = sources.now().iter().filter(reaches).collect();
-        Self { flows, stands, local_from_world, scale, height_m: model.height_m(), middle, radius_m }
+        Self { sources: sources.now(), stands, local_from_world, scale, height_m: model.height_m(), middle, radius_m }
+    }
+
+    /// Those that reach it.
+    fn flows(&self) -> impl Iterator<Item = &SourceFlow> {
+        let (middle, radius_m) = (self.middle, self.radius_m);
+        self.sources.iter().filter(move |flow| flow.place.distance(middle) < flow.reach_m + radius_m)
     }
 
     /// Whether a body may touch it.
@@ -124,19 +129,19 @@ impl<'a> TreeInFlows<'a> {
 
     /// The velocity that sources blow at a place of the world, in the tree's axes, without what comes and goes within the frame.
     fn steady(&self, place: Vec3) -> Vec3 {
-        let steady = self.flows.iter().filter(|flow| !flow.is_pulse());
+        let steady = self.flows().filter(|flow| !flow.is_pulse());
         self.local_from_world * steady.map(|flow| flow.velocity(place)).sum::<Vec3>()
     }
 
     /// All that sources blow at a share of its height, now.
     fn at_height(&self, share: f32) -> Vec3 {
         let place = self.stands.transform_point(Vec3::Y * (share * self.height_m));
-        self.local_from_world * self.flows.iter().map(|flow| flow.velocity(place)).sum::<Vec3>()
+        self.local_from_world * self.flows().map(|flow| flow.velocity(place)).sum::<Vec3>()
     }
 
     /// The load of a beam in a wind; the steady one where it is due.
     fn load(&self, beam: &LiveBeam, wind: &WindAtTree, is_due: bool) -> BeamLoad {
-        let has_pulse = self.flows.iter().any(|flow| flow.is_pulse());
+        let has_pulse = self.flows().any(|flow| flow.is_pulse());
         if !(is_due || has_pulse) {
             return BeamLoad { steady: None, pulse: Vec3A::ZERO };
         }
@@ -160,7 +165,7 @@ impl<'a> TreeInFlows<'a> {
     fn load_at(&self, beam: &LiveBeam, wind: Vec3, place: Vec3) -> [Vec3A; 2] {
         let steady = self.steady(place);
         let mut pulse = Vec3A::ZERO;
-        for flow in self.flows.iter().filter(|flow| flow.is_pulse()) {
+        for flow in self.flows().filter(|flow| flow.is_pulse()) {
             let loads = flow.pulse(place);
             pulse += loads
                 .map(|(velocity, share)| beam.load(wind + steady, self.local_from_world * velocity) * share)
@@ -179,7 +184,7 @@ fn step(
 ) {
     let LiveSway { beams, tree, stands, wind: blown, frames, .. } = live;
     *blown = WindAtTree::default();
-    if place.flows.is_empty() {
+    if place.flows().next().is_none() {
         tree.step(beams, steps, |_, _| BeamLoad::NONE);
         return;
     }

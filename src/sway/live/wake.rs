@@ -3,7 +3,6 @@
 use super::{
     components::LiveSway,
     impulse::TreeImpulse,
-    index::TreeIndex,
     pusher::{Pushers, PushingBody},
     settings::LiveSettings,
 };
@@ -14,7 +13,7 @@ use crate::{
         articulated::TreePose,
         stands::{stands_at, uniform_scale},
     },
-    tree::{Grown, TreeModel},
+    tree::{Grown, TreeModel, TreePlaces},
     wind::WindSources,
 };
 use bevy::prelude::*;
@@ -27,6 +26,14 @@ enum Cause {
     Wind,
     Push,
     Blow([Vec3; 2]),
+}
+
+/// A tree that is touched.
+pub(in crate::sway) struct Touched {
+    tree: Entity,
+    cause: Cause,
+    /// Which of the blows of the frame it is.
+    number: usize,
 }
 
 /// Whether anything blows, pushes or strikes.
@@ -47,20 +54,22 @@ pub(in crate::sway) fn wake_trees(
     mut commands: Commands,
     settings: Res<LiveSettings>,
     mut valid: Local<Option<LiveSettings>>,
-    index: Res<TreeIndex>,
+    places: Res<TreePlaces>,
     (sources, pushers): (Res<WindSources>, Res<Pushers>),
     mut impulses: MessageReader<TreeImpulse>,
     models: Res<Assets<TreeModel>>,
     mut trees: Query<Touchable>,
     awake: Query<(), With<LiveSway>>,
+    (mut touched, mut woken): (Local<Vec<Touched>>, Local<Vec<(Entity, LiveSway)>>),
 ) {
     if settings.is_changed() || valid.is_none() {
         *valid = Some(valid_or_last("live trees", &*settings, LiveSettings::validate, valid.as_ref()));
     }
     let Some(settings) = &*valid else { return };
     let mut left = (settings.most_trees as usize).saturating_sub(awake.iter().count());
-    let mut woken: Vec<(Entity, LiveSway)> = Vec::new();
-    for (entity, cause) in causes(&index, settings, &sources, &pushers, &mut impulses, &models, &trees) {
+    let least_m_s = settings.wake_speed_m_s;
+    find_touched(&mut touched, (&places, &models, &trees), least_m_s, (&sources, &pushers), &mut impulses);
+    for Touched { tree: entity, cause, .. } in touched.drain(..) {
         let Ok((.., pose, live)) = trees.get_mut(entity) else { continue };
         let pushes = matches!(cause, Cause::Push);
         match (live, woken.last_mut().filter(|(last, _)| *last == entity)) {
@@ -78,7 +87,7 @@ pub(in crate::sway) fn wake_trees(
             commands.entity(entity).try_insert(TreePose::default());
         }
     }
-    for (entity, live) in woken {
+    for (entity, live) in woken.drain(..) {
         commands.entity(entity).try_insert(live);
     }
 }
@@ -90,32 +99,30 @@ fn touch(live: &mut LiveSway, cause: Cause) {
     }
 }
 
-/// Every tree that is touched, and by what, in the order of the entities.
-fn causes(
-    index: &TreeIndex,
-    settings: &LiveSettings,
-    sources: &WindSources,
-    pushers: &Pushers,
+/// Finds every tree that is touched, and by what, in the order of the entities. The blows on one tree stay in their order.
+fn find_touched(
+    touched: &mut Vec<Touched>,
+    (places, models, trees): (&TreePlaces, &Assets<TreeModel>, &Query<Touchable>),
+    least_m_s: f32,
+    (sources, pushers): (&WindSources, &Pushers),
     impulses: &mut MessageReader<TreeImpulse>,
-    models: &Assets<TreeModel>,
-    trees: &Query<Touchable>,
-) -> Vec<(Entity, Cause)> {
-    let mut causes: Vec<(Entity, Cause)> = Vec::new();
+) {
+    touched.clear();
+    let wind = |(tree, ..): (Entity, Vec3, f32)| Touched { tree, cause: Cause::Wind, number: 0 };
     for flow in sources.now() {
-        let near = index.near(flow.place, flow.reach_m);
-        let blown = near.filter(|(_, tree)| flow.touches(tree.centre, tree.radius_m, settings.wake_speed_m_s));
-        causes.extend(blown.map(|(entity, _)| (entity, Cause::Wind)));
+        let near = places.near(flow.place, flow.reach_m);
+        touched.extend(near.filter(|(_, centre, radius_m)| flow.touches(*centre, *radius_m, least_m_s)).map(wind));
     }
+    let push = |(tree, ..): (Entity, Vec3, f32)| Touched { tree, cause: Cause::Push, number: 0 };
     for body in pushers.now() {
         let Capsule { ends: [a, b], radius_m } = body.capsule;
-        let near = index.near(a.midpoint(b), 0.5 * a.distance(b) + radius_m + MARGIN_M);
-        let pushed = near.filter(|(entity, _)| is_pushed(body, *entity, models, trees));
-        causes.extend(pushed.map(|(entity, _)| (entity, Cause::Push)));
+        let near = places.near(a.midpoint(b), 0.5 * a.distance(b) + radius_m + MARGIN_M);
+        touched.extend(near.filter(|(tree, ..)| is_pushed(body, *tree, models, trees)).map(push));
     }
-    causes.extend(impulses.read().map(|it| (it.tree, Cause::Blow([it.place, it.impulse_n_s]))));
-    // Stable: the blows on one tree stay in their order.
-    causes.sort_by_key(|(entity, _)| *entity);
-    causes
+    for (number, blow) in (1..).zip(impulses.read()) {
+        touched.push(Touched { tree: blow.tree, cause: Cause::Blow([blow.place, blow.impulse_n_s]), number });
+    }
+    touched.sort_unstable_by_key(|it| (it.tree, it.number));
 }
 
 fn is_pushed(body: &PushingBody, entity: Entity, models: &Assets<TreeModel>, trees: &Query<Touchable>) -> bool {

@@ -43,7 +43,7 @@ pub(in crate::tree) fn is_time_to_search(mut frames: Local<u32>) -> bool {
 }
 
 /// Gives another model to trees whose species, age or seed was changed: at once, or when it is baked.
-pub(in crate::tree) fn regrow_trees(
+pub(crate) fn regrow_trees(
     mut commands: Commands,
     mut baked_species: ResMut<SpeciesModels>,
     changed: Query<Entity, (Changed<Tree>, With<Grown>)>,

@@ -2,6 +2,7 @@
 
 pub(super) mod grow_trees;
 pub(super) mod missing_species;
+pub(super) mod places;
 pub(super) mod season;
 pub(super) mod species_models;
 #[cfg(test)]

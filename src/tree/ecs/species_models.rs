@@ -174,7 +174,7 @@ pub fn bake_variants(species: &Species, age_years: f32) -> impl Iterator<Item = 
 }
 
 /// Stores the models whose baking is done.
-pub(crate) fn store_baked_models(
+pub(in crate::tree) fn store_baked_models(
     mut baked_species: ResMut<SpeciesModels>,
     mut models: ResMut<Assets<TreeModel>>,
     mut baked: MessageWriter<SpeciesBaked>,

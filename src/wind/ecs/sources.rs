@@ -108,13 +108,13 @@ const RAMP_S: f32 = 0.3;
 pub(in crate::wind) fn advance_sources(
     time: Res<Time>,
     mut refused: Local<Vec<Entity>>,
+    mut blowing: Local<Vec<(Entity, SourceFlow)>>,
     mut flows: ResMut<WindSources>,
     mut sources: Query<(Entity, &mut WindSource, &Transform, Option<&GlobalTransform>, Has<ChildOf>)>,
 ) {
     let flows = flows.bypass_change_detection();
     std::mem::swap(&mut flows.now, &mut flows.before);
     flows.now.clear();
-    let mut blowing: Vec<(Entity, SourceFlow)> = Vec::new();
     for (entity, mut source, transform, global, is_child) in &mut sources {
         let was_changed = source.is_changed();
         let source = source.bypass_change_detection();
@@ -138,7 +138,7 @@ pub(in crate::wind) fn advance_sources(
         blowing.extend(flow.map(|flow| (entity, flow)));
     }
     blowing.sort_unstable_by_key(|(entity, _)| *entity);
-    flows.now.extend(blowing.into_iter().map(|(_, flow)| flow));
+    flows.now.extend(blowing.drain(..).map(|(_, flow)| flow));
 }
 
 /// Lets a source grow older. None once it has ended.

@@ -6,7 +6,7 @@ use bevy::{
     math::{IVec2, Vec2, Vec2Swizzles, Vec3, Vec3Swizzles},
     platform::collections::HashMap,
 };
-use std::hash::Hash;
+use std::{collections::BTreeMap, hash::Hash, iter::from_fn};
 
 /// Side of a cell, m.
 const CELL_M: f32 = 32.0;
@@ -18,14 +18,25 @@ const LONGEST_M: f32 = 1e5;
 pub struct Standing {
     /// Its foot, m.
     pub foot: Vec3,
-    /// Nothing of it is farther from its foot on the map, m.
-    pub reach_m: f32,
+    /// The middle and the radius of a ball that holds it, m.
+    pub centre: Vec3,
+    pub radius_m: f32,
+    /// Nothing of it is farther from its foot, m.
+    reach_m: f32,
+}
+
+impl Standing {
+    /// A thing with a foot that a ball holds.
+    pub fn new(foot: Vec3, centre: Vec3, radius_m: f32) -> Self {
+        Self { foot, centre, radius_m, reach_m: foot.distance(centre) + radius_m }
+    }
 }
 
 /// Things by place. Nothing that is asked of it depends on the order in which they came.
 #[derive(Clone, Debug)]
 pub struct PlaceGrid<K> {
-    cells: HashMap<IVec2, Vec<(K, Standing)>>,
+    /// By row and column (z, x).
+    cells: BTreeMap<(i32, i32), Vec<(K, Standing)>>,
     places: HashMap<K, IVec2>,
     /// The greatest reach so far, m.
     reach_m: f32,
@@ -36,7 +47,7 @@ pub struct PlaceGrid<K> {
 impl<K> Default for PlaceGrid<K> {
     fn default() -> Self {
         let bounds = [IVec2::MAX, IVec2::MIN];
-        Self { cells: HashMap::default(), places: HashMap::default(), reach_m: 0.0, bounds }
+        Self { cells: BTreeMap::new(), places: HashMap::default(), reach_m: 0.0, bounds }
     }
 }
 
@@ -57,7 +68,7 @@ impl<K: Copy + Eq + Hash + Ord> PlaceGrid<K> {
             return;
         }
         let cell = cell_of(standing.foot.xz());
-        let there = self.cells.entry(cell).or_default();
+        let there = self.cells.entry((cell.y, cell.x)).or_default();
         // In the order of their keys, whoever came first.
         let place = there.partition_point(|(other, _)| *other < key);
         there.insert(place, (key, standing));
@@ -69,6 +80,7 @@ impl<K: Copy + Eq + Hash + Ord> PlaceGrid<K> {
     /// Takes a thing out.
     pub fn remove(&mut self, key: K) {
         let Some(cell) = self.places.remove(&key) else { return };
+        let cell = (cell.y, cell.x);
         let Some(there) = self.cells.get_mut(&cell) else { return };
         there.retain(|(other, _)| *other != key);
         if there.is_empty() {
@@ -76,22 +88,46 @@ impl<K: Copy + Eq + Hash + Ord> PlaceGrid<K> {
         }
     }
 
+    /// What stands in the cells between two, row by row. It takes as long as there are such cells, however far the two are apart.
+    fn between(&self, low: IVec2, high: IVec2) -> impl Iterator<Item = &(K, Standing)> {
+        let mut next = Some((low.y, low.x));
+        let cells = from_fn(move || {
+            loop {
+                let ((row, column), there) = self.cells.range(next?..).next()?;
+                if *row > high.y {
+                    return None;
+                }
+                if *column < low.x {
+                    next = Some((*row, low.x));
+                } else if *column > high.x {
+                    next = row.checked_add(1).map(|row| (row, low.x));
+                } else {
+                    next = column.checked_add(1).map(|column| (*row, column));
+                    return Some(there);
+                }
+            }
+        });
+        cells.flatten()
+    }
+
     /// Visits the things whose feet are within a radius, m, of a place (x, z), with their distance on the map, m: cell by cell, row by row.
     pub fn within(&self, place: Vec2, radius_m: f32, mut visit: impl FnMut(K, &Standing, f32)) {
         if !(place.is_finite() && (0.0..LONGEST_M).contains(&radius_m)) {
             return;
         }
-        let (low, high) = (cell_of(place - radius_m), cell_of(place + radius_m));
-        for z in low.y..=high.y {
-            for x in low.x..=high.x {
-                for (key, standing) in self.cells.get(&IVec2::new(x, z)).into_iter().flatten() {
-                    let distance_m = standing.foot.xz().distance(place);
-                    if distance_m <= radius_m {
-                        visit(*key, standing, distance_m);
-                    }
-                }
+        for (key, standing) in self.between(cell_of(place - radius_m), cell_of(place + radius_m)) {
+            let distance_m = standing.foot.xz().distance(place);
+            if distance_m <= radius_m {
+                visit(*key, standing, distance_m);
             }
         }
+    }
+
+    /// The things whose balls are within a radius, m, of a place in space.
+    pub fn near(&self, place: Vec3, radius_m: f32) -> impl Iterator<Item = (K, &Standing)> {
+        let reach_m = radius_m + self.reach_m;
+        let near = self.between(cell_of(place.xz() - reach_m), cell_of(place.xz() + reach_m));
+        near.filter(move |(_, it)| it.centre.distance(place) <= radius_m + it.radius_m).map(|(key, it)| (*key, it))
     }
 
     /// Visits the things that a ray passes within their reach on the map, each once, until `visit` answers no. The last argument of
@@ -129,7 +165,7 @@ impl<K: Copy + Eq + Hash + Ord> PlaceGrid<K> {
             let high = number(across[0].max(across[1]) + self.reach_m).min(greatest.y);
             for other in low..=high {
                 let cell = if along_x { IVec2::new(slab, other) } else { IVec2::new(other, slab) };
-                for (key, standing) in self.cells.get(&cell).into_iter().flatten() {
+                for (key, standing) in self.cells.get(&(cell.y, cell.x)).into_iter().flatten() {
                     if is_passed(standing, from, way, longest_m) && !visit(*key, standing, enters_m) {
                         return;
                     }
@@ -167,7 +203,7 @@ mod tests {
         for key in 0..count {
             let mut spread = || random.random_range(-half_m..half_m);
             let foot = Vec3::new(spread(), 0.1 * spread(), spread());
-            let standing = Standing { foot, reach_m: random.random_range(0.5..25.0) };
+            let standing = Standing::new(foot, foot, random.random_range(0.5..25.0));
             grid.insert(key, standing);
             all.push(standing);
         }
@@ -225,13 +261,14 @@ mod tests {
     #[test]
     fn odd_places_and_rays_find_nothing() {
         let mut grid = PlaceGrid::default();
-        grid.insert(1, Standing { foot: Vec3::ZERO, reach_m: 3.0 });
-        grid.insert(2, Standing { foot: Vec3::NAN, reach_m: 3.0 });
-        grid.insert(3, Standing { foot: Vec3::ZERO, reach_m: f32::INFINITY });
+        grid.insert(1, Standing::new(Vec3::ZERO, Vec3::ZERO, 3.0));
+        grid.insert(2, Standing::new(Vec3::NAN, Vec3::ZERO, 3.0));
+        grid.insert(3, Standing::new(Vec3::ZERO, Vec3::ZERO, f32::INFINITY));
         assert_eq!(grid.len(), 1);
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             grid.within(Vec2::splat(bad), 10.0, |_, _, _| panic!("nobody is there"));
             grid.within(Vec2::ZERO, bad, |_, _, _| panic!("no radius"));
+            assert_eq!(grid.near(Vec3::splat(bad), 10.0).count(), 0);
             grid.along(Vec3::splat(bad), Vec3::X, 10.0, |_, _, _| panic!("no ray"));
             grid.along(Vec3::ZERO, Vec3::splat(bad), 10.0, |_, _, _| panic!("no ray"));
         }
@@ -246,5 +283,37 @@ mod tests {
             true
         });
         assert_eq!(found, [1, 1], "straight down");
+    }
+
+    /// Things that move, come and go are found where they are, however wide the search.
+    #[test]
+    fn balls_near_a_place_are_those_that_a_search_of_all_finds() {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(5);
+        let mut grid = PlaceGrid::default();
+        let mut all: Vec<(u32, Standing)> = Vec::new();
+        for round in 0..2 {
+            for key in 0..300_u32 {
+                let foot = Vec3::from_array(std::array::from_fn(|_| random.random_range(-200.0..200.0)));
+                let standing = Standing::new(foot, foot + Vec3::Y * 5.0, random.random_range(1.0..9.0));
+                grid.insert(key, standing);
+                match (round, key % 7) {
+                    (1, 0) => grid.remove(key),
+                    (1, _) => all.push((key, standing)),
+                    _ => {}
+                }
+            }
+        }
+        for radius_m in [0.0, 10.0, 150.0, 1e9, f32::MAX] {
+            for _ in 0..20 {
+                let place = Vec3::from_array(std::array::from_fn(|_| random.random_range(-250.0..250.0)));
+                let mut found: Vec<u32> = grid.near(place, radius_m).map(|(key, _)| key).collect();
+                found.sort_unstable();
+                let is_near = |(_, it): &&(u32, Standing)| it.centre.distance(place) <= radius_m + it.radius_m;
+                let expected: Vec<u32> = all.iter().filter(is_near).map(|(key, _)| *key).collect();
+                assert_eq!(found, expected);
+            }
+        }
+        all.iter().for_each(|(key, _)| grid.remove(*key));
+        assert!(grid.cells.is_empty() && grid.len() == 0);
     }
 }
