@@ -29,8 +29,7 @@ use self::{
 };
 use super::ui::Panel;
 use crate::{
-    plugin_checks::require_plugin, query::TreePlaces, render::TreeRenderPlugin, schedule::WindwoodSystems,
-    timing::timed,
+    plugin_checks::require_plugin, render::TreeRenderPlugin, schedule::WindwoodSystems, timing::timed, tree::TreePlaces,
 };
 use bevy::{camera::CameraUpdateSystems, prelude::*, time::common_conditions::on_real_timer};
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPrimaryContextPass};

@@ -141,7 +141,7 @@ impl<'a> TreeInFlows<'a> {
 
     /// The load of a beam in a wind; the steady one where it is due.
     fn load(&self, beam: &LiveBeam, wind: &WindAtTree, is_due: bool) -> BeamLoad {
-        let has_pulse = self.flows().any(|flow| flow.is_pulse());
+        let has_pulse = self.flows().any(SourceFlow::is_pulse);
         if !(is_due || has_pulse) {
             return BeamLoad { steady: None, pulse: Vec3A::ZERO };
         }
