@@ -30,6 +30,12 @@ pub trait Ground: Send + Sync {
     }
 }
 
+/// What grows on the ground, seen from afar.
+pub trait Cover: Send + Sync {
+    /// Share of the ground about a place that is under trees, 0 to 1.
+    fn share(&self, place: DVec2) -> f32;
+}
+
 /// Elevations are compared over so much to each side, m. Chosen so that a function of single precision does well: at 1 km its places
 /// are 0.06 mm apart.
 const STEP_M: f64 = 0.1;

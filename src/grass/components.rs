@@ -6,9 +6,8 @@ use super::{
 };
 use crate::{
     background::{Work, spawn_work},
-    ground::{Ground, LevelGround},
+    ground::{Cover, Ground, LevelGround},
     setting::SettingError,
-    terrain::Cover,
 };
 use bevy::{
     prelude::*,

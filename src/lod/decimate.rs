@@ -3,8 +3,8 @@
 //! What stays is nested: a coarser tree has no branch and no spray that a finer one lacks, so that a change of level is
 //! seen as little as can be. Sprays are chosen by the golden ratio, that is evenly along the branches in whose order they
 //! come. Those that stay are enlarged about their anchors until they have the area of all. The vertices are those of the
-//! full tree, and the same material draws them. But where branches are a pixel or two wide their tubes have fewer sides, and the mask of
-//! leaves lets more through (`tree/leaf/coarse_mask.rs`), so that fewer sprays cover as much.
+//! full tree, and the same material draws them. But where branches are a pixel or two wide their tubes have fewer
+//! sides.
 
 use bevy::math::Vec3;
 use std::ops::Range;
@@ -37,7 +37,7 @@ pub struct DecimatedMeshes {
 pub fn decimate(model: &TreeModel, decimation: &Decimation) -> DecimatedMeshes {
     DecimatedMeshes {
         wood: thick_wood(&model.wood, &model.skeleton, decimation.least_radius_m),
-        leaves: fewer_leaves(&model.leaves, decimation.leaf_share, 1.0),
+        leaves: fewer_leaves(&model.leaves, decimation.leaf_share),
     }
 }
 
@@ -122,14 +122,13 @@ impl WoodVertices {
     }
 }
 
-/// A share of the sprays, enlarged so that they have a share of the area of all.
-#[must_use]
-pub(crate) fn fewer_leaves(leaves: &LeafVertices, share: f32, area_share: f32) -> LeafVertices {
+/// A share of the sprays, enlarged so that they have the area of all.
+fn fewer_leaves(leaves: &LeafVertices, share: f32) -> LeafVertices {
     let sprays = sprays(leaves);
     let stays = |&(index, _): &(usize, &Spray)| is_chosen(index, share);
     let mut out = LeafVertices::default();
     sprays.iter().enumerate().filter(stays).for_each(|(_, spray)| out.append(leaves, spray));
-    let (all_m2, left_m2) = (area_share * area_m2(leaves), area_m2(&out));
+    let (all_m2, left_m2) = (area_m2(leaves), area_m2(&out));
     if left_m2 > 0.0 && out.indices.len() < leaves.indices.len() {
         out.enlarge((all_m2 / left_m2).sqrt());
     }
@@ -268,7 +267,7 @@ mod tests {
     fn fewer_leaves_keep_the_whole_area() {
         let leaves = oak().leaves;
         for share in [0.5, 0.2, 0.05] {
-            let fewer = fewer_leaves(&leaves, share, 1.0);
+            let fewer = fewer_leaves(&leaves, share);
             assert!((area_m2(&fewer) / area_m2(&leaves) - 1.0).abs() < 1e-4);
             let left = fewer.indices.len() as f32 / leaves.indices.len() as f32;
             // The golden ratio is never off by two of its places, of some hundred.

@@ -45,6 +45,6 @@ pub use screen_size::{Lens, LodScreenSizes};
 #[cfg(all(test, feature = "render"))]
 pub(crate) use settings::LEAST_LEAF_SHARE;
 pub use settings::{Decimation, EnvelopeSettings, ImpostorSettings, LodBakeSettings, MOST_LEVELS};
-pub use thinned::{ThinnedMeshes, thinned_meshes};
 #[cfg(feature = "render")]
-pub(crate) use thinned::{is_coarse, thinned};
+pub(crate) use thinned::thinned;
+pub use thinned::{ThinnedMeshes, thinned_meshes};

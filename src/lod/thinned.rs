@@ -1,13 +1,11 @@
 //! The levels of a tree that are its own meshes thinned: how much of it each species bears to lose.
 
 use super::{
-    decimate::{DecimatedMeshes, coarse_thick_wood, decimate, fewer_leaves, prunable_radius_m, thick_wood},
+    decimate::{DecimatedMeshes, coarse_thick_wood, decimate, prunable_radius_m, thick_wood},
     screen_size::{Lens, LodScreenSizes},
     settings::{Decimation, LodBakeSettings},
 };
-use crate::tree::{
-    Growth, Species, TreeModel, crown::impressionist::leaves_at, leaf::coarse_mask_gain, vertices::WoodVertices,
-};
+use crate::tree::{Growth, Species, TreeModel, crown::impressionist::leaves_at, vertices::WoodVertices};
 
 /// Share of the side of its wood that each level of a tree that sheds its leaves keeps at least: under leaves, and without them, where
 /// twigs are all that is seen of a crown. Branches of birches are thin: with all that may be left out under the leaves of an oak, a birch
@@ -49,9 +47,7 @@ pub(crate) fn thinned(species: &Species, model: &TreeModel, number: usize, wante
     let decimation = bearable(species, model, wanted);
     let mut meshes = decimate(model, &decimation.in_leaf);
     if is_coarse(number) {
-        let gain = coarse_mask_gain(species);
         meshes.wood = coarse_thick_wood(species, &model.skeleton, decimation.in_leaf.least_radius_m);
-        meshes.leaves = fewer_leaves(&model.leaves, decimation.in_leaf.leaf_share / gain, 1.0 / gain);
     }
     if let Growth::Impressionist(crown) = &species.growth {
         let begin_m = LodScreenSizes::default().distances_of_three_m(crown.height_m, Lens::default())[number];
@@ -64,9 +60,8 @@ pub(crate) fn thinned(species: &Species, model: &TreeModel, number: usize, wante
     ThinnedMeshes { meshes, bare_wood: decimation.bare_radius_m.map(bare_wood) }
 }
 
-/// Whether a thinned level, by its number from 0, is made for trees that are a quarter of a screen high and less: its tubes have few sides,
-/// and its leaves the coarse mask.
-pub(crate) fn is_coarse(number: usize) -> bool {
+/// Whether a thinned level, by its number from 0, is made for trees that are a quarter of a screen high and less: its tubes have few sides.
+fn is_coarse(number: usize) -> bool {
     number > 0
 }
 

@@ -5,9 +5,9 @@
 //! 2005, Remote Sens. Environ. 97, 447; from memory, so unconfirmed) about a half for woods. Under closed broadleaves of `L = 5` that leaves 8%;
 //! 2 to 10% are told.
 //!
-//! A stand is known by how it stops the wind ([`Canopy`](crate::wind::Canopy)). Where it is closed, `u*/U_h` is at its greatest, and the
-//! attenuation of the wind is `a = 0.3 / (0.4 * 2 (1 - d/h))` with `1 - d/h = 1/s` but for `exp(-s)`: so `s = a / 0.375`, and from `s^2 = 15
-//! lambda` the leaf area index is `2 lambda = 0.95 a^2`.
+//! A stand is known by how it stops the wind ([`Canopy`](crate::wind::Canopy)), and so by its displacement height `d`: `1 - d/h = (1 -
+//! exp(-s)) / s` with `s^2 = 15 lambda`. One step from `s = 1 / (1 - d/h)` solves that to 2% where a stand is closed, and the leaf area
+//! index is `2 lambda = 2/15 s^2`.
 //!
 //! Leaves are distributed over the upper part of the height, most of them in its middle. Near the edge of a stand light comes from the side: there a share
 //! as open as the mean of all sides is seen as if there were no trees.
@@ -17,16 +17,20 @@
 use crate::wind::{Canopy, PackedCanopy, exposure_direction};
 
 const EXTINCTION: f32 = 0.5;
-const LEAF_AREA: f32 = 0.95;
+/// Of the leaf area index by `s^2`.
+const INDEX_BY_SQUARE: f32 = 0.13333333;
+const LEAST_GAP: f32 = 0.01;
 /// Below this share of its height a stand has no leaves. Chosen; crowns of closed stands are a third to two thirds of the height.
 const LOWEST_LEAVES: f32 = 0.35;
 
 fn sky_share(canopy: PackedCanopy, height_m: f32) -> f32 {
     let profile = canopy.profile();
+    let gap = (1.0 - profile.displacement_share).max(LEAST_GAP);
+    let drag = (1.0 - (-1.0 / gap).exp()) / gap;
     let openness = (0..8).map(|number| canopy.exposure_to(exposure_direction(number))).sum::<f32>() / 8.0;
     let share = height_m / profile.height_m.max(0.01);
     let below = ((1.0 - share) / (1.0 - LOWEST_LEAVES)).clamp(0.0, 1.0);
-    let leaves_above = below * below * (3.0 - 2.0 * below) * LEAF_AREA * profile.attenuation.powi(2);
+    let leaves_above = below * below * (3.0 - 2.0 * below) * INDEX_BY_SQUARE * drag * drag;
     let through = (-EXTINCTION * leaves_above).exp();
     through + (1.0 - through) * openness
 }
@@ -38,7 +42,12 @@ fn inside(leaf_area_index: f32) -> PackedCanopy {
 #[test]
 fn constants_are_those_of_the_shader() {
     let shader = include_str!("shaders/sky_share.wesl");
-    for (name, value) in [("EXTINCTION", EXTINCTION), ("LEAF_AREA", LEAF_AREA), ("LOWEST_LEAVES", LOWEST_LEAVES)] {
+    for (name, value) in [
+        ("EXTINCTION", EXTINCTION),
+        ("INDEX_BY_SQUARE", INDEX_BY_SQUARE),
+        ("LEAST_GAP", LEAST_GAP),
+        ("LOWEST_LEAVES", LOWEST_LEAVES),
+    ] {
         assert!(shader.contains(&format!("const {name}: f32 = {value};")), "{name}");
     }
 }

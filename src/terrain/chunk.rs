@@ -8,8 +8,8 @@
 //! [`COARSEST_NEIGHBOUR`]: together they fill whatever opens between the two edges. Which of them are shown depends on
 //! the neighbours of the moment; [`Seams`] tells the vertex shader, and the mesh stays as it is.
 
-use super::{chunk_key::SIDE, cover::Cover};
-use crate::ground::Ground;
+use super::chunk_key::SIDE;
+use crate::ground::{Cover, Ground};
 use bevy::math::{DVec2, Vec3};
 
 pub use super::chunk_key::{CHUNK_CELLS, COARSEST_NEIGHBOUR, ChunkKey, Edge, Seams};

@@ -1,8 +1,8 @@
 //! Ground as an entity.
 
-use super::{chunk_key::CHUNK_CELLS, cover::Cover, elevation_map::ElevationMap, pyramid::PyramidShape};
+use super::{chunk_key::CHUNK_CELLS, elevation_map::ElevationMap, pyramid::PyramidShape};
 use crate::{
-    ground::Ground,
+    ground::{Cover, Ground},
     setting::{SettingError, require},
 };
 use bevy::prelude::*;

@@ -40,7 +40,7 @@
 //! | `drift`, `autocorrelation`, `lag_pairs`, `variogram`, `fit` | Estimates from maps. |
 //! | `spline_ground`, `layers` | Ground formed by control points; sums of grounds. |
 //! | `triangle_ground`, `mesh`, `ray_cast_ground` | A game's own ground: triangles, meshes, rays. |
-//! | `chunk_key`, `chunk`, `pyramid`, `cover`, `ground_texture`, `litter_texture` | What is drawn of it. |
+//! | `chunk_key`, `chunk`, `pyramid`, `ground_texture`, `litter_texture` | What is drawn of it. |
 //! | `components`, `ecs`, `material`, `plugin` | Ground as entities, maps as assets. All others are plain arithmetic without an app. |
 
 mod autocorrelation;
@@ -49,7 +49,6 @@ pub mod chunk;
 mod chunk_key;
 mod components;
 mod covariance;
-mod cover;
 mod drift;
 mod ecs;
 pub mod elevation;
@@ -79,9 +78,9 @@ mod triangle_ground;
 mod turning_bands;
 mod variogram;
 
+pub use crate::ground::Cover;
 pub use components::{GroundLook, Terrain, TerrainFile, TerrainSettings};
 pub use covariance::CovarianceModel;
-pub use cover::Cover;
 pub use drift::{Drift, FoundDrift};
 pub use ecs::elevation_loader::{ElevationLoadError, ElevationLoader, ElevationMapSettings};
 pub use elevation::{Elevation, ElevationNotice, ElevationSettings, RawLayout, RawSample};

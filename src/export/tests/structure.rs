@@ -159,8 +159,8 @@ fn lower_levels_are_behind_the_extension_and_smaller() {
     let extras: Value = serde_json::from_str(lods[0].extras().as_ref().unwrap().get()).unwrap();
     let coverages: Vec<f64> =
         extras["MSFT_screencoverage"].as_array().unwrap().iter().map(|it| it.as_f64().unwrap()).collect();
-    // 700 pixels of 1080, and the geometric mean of 700 and 100.
-    let expected = [700.0 / 1080.0, (700.0_f64 * 100.0).sqrt() / 1080.0, 0.0];
+    // 700 pixels of 1080, and the geometric mean of 700 and 128.
+    let expected = [700.0 / 1080.0, (700.0_f64 * 128.0).sqrt() / 1080.0, 0.0];
     assert!(coverages.iter().zip(expected).all(|(told, expected)| (told - expected).abs() < 1e-4), "{coverages:?}");
     let in_scene: Vec<usize> = reader.gltf.default_scene().unwrap().nodes().map(|node| node.index()).collect();
     assert!(in_scene.contains(&lods[0].index()) && !in_scene.contains(&lods[1].index()));

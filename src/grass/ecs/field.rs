@@ -5,9 +5,8 @@ use crate::{
         components::{GrassGround, GrassPatch, GrassShade},
         field_grid::{GridPatch, patches_within},
     },
-    ground::{Ground, LevelGround},
+    ground::{Cover, Ground, LevelGround},
     setting::{SettingError, require},
-    terrain::Cover,
     viewpoint::Viewpoints,
 };
 use bevy::{camera::visibility::RenderLayers, math::DVec2, prelude::*};

@@ -2,19 +2,14 @@
 
 use crate::{
     render::texture_image::{ALL_MIPS, Channels, device_image, image},
-    texture::{MASK_CUT_OFF, TextureData},
-    tree::{
-        Species,
-        bark::BarkTextures,
-        leaf::{COARSE_MIP, coarse_cut_off, coarse_mask_gain},
-        textures::SpeciesTextures,
-    },
+    texture::TextureData,
+    tree::{bark::BarkTextures, textures::SpeciesTextures},
 };
 use bevy::{image::ImageAddressMode, prelude::*};
 
 /// Coarsest mip of masked foliage that is used: beyond it a spray is a few texels, between which no alpha passes the mask,
 /// and distant crowns would go bare.
-const FOLIAGE_LOD_LIMIT: f32 = COARSE_MIP as f32;
+const FOLIAGE_LOD_LIMIT: f32 = 3.0;
 
 /// All textures of a species.
 pub(crate) struct SpeciesImages {
@@ -26,21 +21,17 @@ pub(crate) struct SpeciesImages {
     pub bare_foliage: Option<Image>,
     /// Mean colour of the foliage, sRGB 0 to 1.
     pub foliage_colour: [f32; 3],
-    /// Cut-offs of the masks of foliage and of bare foliage at coarse levels.
-    pub coarse_cut_offs: [f32; 2],
 }
 
 impl SpeciesImages {
     /// With `compresses`, in blocks, where the device reads these: a fifth as many bytes.
-    pub fn new(species: &Species, textures: &SpeciesTextures, compresses: bool) -> Self {
+    pub fn new(textures: &SpeciesTextures, compresses: bool) -> Self {
         let BarkTextures { base_colour, normal, surface } = &textures.bark;
         let repeating =
             |texture, channels| device_image(texture, channels, compresses, ImageAddressMode::Repeat, ALL_MIPS);
         let masked = |texture| {
             device_image(texture, Channels::Rgba, compresses, ImageAddressMode::ClampToEdge, FOLIAGE_LOD_LIMIT)
         };
-        let gain = coarse_mask_gain(species);
-        let cut_off = |mask: Option<&TextureData>| mask.map_or(MASK_CUT_OFF, |mask| coarse_cut_off(mask, gain));
         Self {
             bark: repeating(base_colour, Channels::Rgb),
             bark_normal: repeating(normal, Channels::Normal),
@@ -49,7 +40,6 @@ impl SpeciesImages {
             foliage_normal: textures.foliage_normal.as_ref().map(masked),
             bare_foliage: textures.bare_foliage.as_ref().map(masked),
             foliage_colour: textures.foliage_colour(),
-            coarse_cut_offs: [Some(&textures.foliage), textures.bare_foliage.as_ref()].map(cut_off),
         }
     }
 }

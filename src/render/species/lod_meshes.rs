@@ -8,7 +8,7 @@ use super::{
 use crate::{
     lod::{
         CrossedPolygons, EnvelopeLevel, EnvelopeVertices, LodBakeSettings, Scene, ThinnedMeshes, bind_to_swaying,
-        crossed_polygons, is_coarse, swaying_beams, thinned,
+        crossed_polygons, swaying_beams, thinned,
     },
     render::settings::LevelStyle,
     tree::{
@@ -72,8 +72,6 @@ pub(crate) enum MaterialKind {
     /// Bark that fades into another level; it needs a mask, which costs.
     FadingBark,
     Foliage,
-    /// Foliage of which the mask lets more through.
-    CoarseFoliage,
     /// An envelope of leaves in this texture.
     Envelope(Box<Image>),
     /// Linear colours of trunk and crown.
@@ -117,7 +115,7 @@ pub(crate) fn species_meshes(
     };
     let variants = models.iter().map(variant).collect();
     let images = textures.filter(|_| has_images);
-    SpeciesMeshes { images: images.map(|it| SpeciesImages::new(species, &it, recipe.compresses_textures)), variants }
+    SpeciesMeshes { images: images.map(|it| SpeciesImages::new(&it, recipe.compresses_textures)), variants }
 }
 
 /// A level of [`LevelStyle::Thinned`] with the meshes of those of its parts that are wanted: the tree itself, or a thinned one. Only the last
@@ -133,12 +131,11 @@ pub(crate) fn remade_level(recipe: &LevelRecipe, model: &TreeModel, level: usize
         let woods = [Some(&mut meshes.wood), bare_wood.as_mut()].into_iter().flatten().map(|wood| &mut wood.sway);
         woods.chain([&mut meshes.leaves.sway]).for_each(|sway| bind_to_swaying(&model.skeleton, sway));
     }
-    let leaves = if is_coarse(number) { MaterialKind::CoarseFoliage } else { MaterialKind::Foliage };
     let wood = |wood: WoodVertices, part| MeshPart { mesh: wants(part).then(|| wood_mesh(&wood)), material: bark() };
     LodMeshes {
         wood: wood(meshes.wood, LevelPart::Wood),
         bare_wood: bare_wood.map(|it| wood(it, LevelPart::BareWood)),
-        leaves: foliage(&meshes.leaves, leaves, wants(LevelPart::Leaves)),
+        leaves: foliage(&meshes.leaves, wants(LevelPart::Leaves)),
         is_wood_nested: true,
     }
 }
@@ -148,13 +145,13 @@ fn full_level(model: &TreeModel, bark: MaterialKind, wanted: PartSet) -> LodMesh
     LodMeshes {
         bare_wood: None,
         wood: MeshPart { mesh: wants(LevelPart::Wood).then(|| wood_mesh(&model.wood)), material: bark },
-        leaves: foliage(&model.leaves, MaterialKind::Foliage, wants(LevelPart::Leaves)),
+        leaves: foliage(&model.leaves, wants(LevelPart::Leaves)),
         is_wood_nested: false,
     }
 }
 
-fn foliage(leaves: &LeafVertices, material: MaterialKind, is_wanted: bool) -> Option<MeshPart> {
-    let part = || MeshPart { mesh: is_wanted.then(|| leaf_mesh(leaves)), material };
+fn foliage(leaves: &LeafVertices, is_wanted: bool) -> Option<MeshPart> {
+    let part = || MeshPart { mesh: is_wanted.then(|| leaf_mesh(leaves)), material: MaterialKind::Foliage };
     (!leaves.indices.is_empty()).then(part)
 }
 

@@ -29,9 +29,6 @@ pub(crate) struct SpeciesMaterials {
     fading_bark: MeshMaterials,
     foliage: MeshMaterials,
     bare_foliage: Option<MeshMaterials>,
-    /// Those of coarse levels.
-    coarse_foliage: MeshMaterials,
-    coarse_bare_foliage: Option<MeshMaterials>,
     /// Materials of single variants read the same tables.
     extension: SwayExtension,
     translucency: f32,
@@ -77,18 +74,12 @@ impl MaterialAssets<'_> {
             normal_map_texture: images.foliage_normal.map(|normal| self.images.add(normal)),
             ..leaf_material(species.foliage.translucency)
         };
-        let bare_foliage = images
-            .bare_foliage
-            .map(|twigs| StandardMaterial { base_color_texture: Some(self.images.add(twigs)), ..leaf_material(0.0) });
-        let bare_extension = SwayExtension { leaf: extension.leaf.bare(), ..extension.clone() };
-        let [cut_off, bare_cut_off] = images.coarse_cut_offs.map(AlphaMode::Mask);
-        let coarse = |material: &StandardMaterial, alpha_mode| StandardMaterial { alpha_mode, ..material.clone() };
-        let coarse_foliage = self.add(coarse(&foliage, cut_off), &extension);
-        let coarse_bare = bare_foliage.as_ref().map(|twigs| coarse(twigs, bare_cut_off));
+        let bare_foliage = images.bare_foliage.map(|twigs| {
+            let twigs = StandardMaterial { base_color_texture: Some(self.images.add(twigs)), ..leaf_material(0.0) };
+            self.add(twigs, &SwayExtension { leaf: extension.leaf.bare(), ..extension.clone() })
+        });
         SpeciesMaterials {
-            coarse_foliage,
-            coarse_bare_foliage: coarse_bare.map(|twigs| self.add(twigs, &bare_extension)),
-            bare_foliage: bare_foliage.map(|twigs| self.add(twigs, &bare_extension)),
+            bare_foliage,
             bark: self.add(bark, &extension),
             fading_bark: self.add(fading_bark, &extension),
             foliage: self.add(foliage, &extension),
@@ -103,7 +94,6 @@ impl MaterialAssets<'_> {
             MaterialKind::Bark => species.bark.clone(),
             MaterialKind::FadingBark => species.fading_bark.clone(),
             MaterialKind::Foliage => species.foliage.clone(),
-            MaterialKind::CoarseFoliage => species.coarse_foliage.clone(),
             MaterialKind::Envelope(colour) => {
                 let colour = Some(self.images.add(*colour));
                 let material = StandardMaterial { base_color_texture: colour, ..leaf_material(species.translucency) };
@@ -118,11 +108,7 @@ impl MaterialAssets<'_> {
 
     /// What takes the place of a mesh's material while the tree is bare.
     pub fn when_bare(&self, kind: &MaterialKind, species: &SpeciesMaterials) -> Option<MeshMaterials> {
-        match kind {
-            MaterialKind::Foliage => species.bare_foliage.clone(),
-            MaterialKind::CoarseFoliage => species.coarse_bare_foliage.clone(),
-            _ => None,
-        }
+        species.bare_foliage.clone().filter(|_| matches!(kind, MaterialKind::Foliage))
     }
 
     fn add(&mut self, base: StandardMaterial, extension: &SwayExtension) -> MeshMaterials {

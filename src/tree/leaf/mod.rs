@@ -1,11 +1,10 @@
 //! Leaves: how they are shaped, veined, coloured and set on their twig, and the textures of a spray of them.
 //!
 //! `outline` draws the margin of one leaf, `venation` its veins, `blade` turns both into a field that can be
-//! drawn at any size, `spray` sets leaves on a twig, [`texture`] draws them, `cover` tells how much of a card they cover, and `coarse_mask`
-//! how much more of it coarse levels draw. `ellipsoids` is the other kind of leaves, which have none of these.
+//! drawn at any size, `spray` sets leaves on a twig, [`texture`] draws them, and `cover` tells how much of a card they cover. `ellipsoids` is the other kind of leaves, which
+//! have none of these.
 
 mod blade;
-mod coarse_mask;
 mod cover;
 mod ellipsoids;
 mod outline;
@@ -14,9 +13,6 @@ mod spray;
 pub mod texture;
 mod venation;
 
-pub(crate) use coarse_mask::coarse_mask_gain;
-#[cfg(feature = "render")]
-pub(crate) use coarse_mask::{COARSE_MIP, coarse_cut_off};
 pub(in crate::tree) use cover::card_cover;
 pub use ellipsoids::{LeafEllipsoids, LeafKind};
 pub use settings::{Leaf, LeafArrangement, LeafMargin, LeafShape};
