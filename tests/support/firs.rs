@@ -38,6 +38,8 @@ pub fn draw_firs(limits: WgpuLimits) -> Outcome {
         limit_mesh_buffers(&mut app, binding_bytes);
     }
     app.insert_resource(ClearColor(BACKGROUND));
+    // At lower levels a fir has few poses, and all of them find room.
+    app.insert_resource(LevelOfDetail { style: LevelStyle::Full, ..default() });
     app.finish();
     app.cleanup();
     let species = app.world().resource::<AssetServer>().load("species/fir.species.ron");
