@@ -43,7 +43,7 @@
 //! | `render` | how trees are drawn: prepared species, instances, LOD selection, shaders, impostors | sway, lod, tree, wind, dynamics, texture |
 //! | [`query`] | what games ask: rays, colliders, the wind among trees, [`WindListener`](query::WindListener) | sway, tree, wind, dynamics |
 //! | `export` | trees and stands as files: glTF, OBJ, impostors; no ECS | sway, lod, tree, texture, dynamics |
-//! | [`grass`] | meadows that bend in the wind, [`GrassPatch`](grass::GrassPatch) | sway, render |
+//! | [`grass`] | meadows that bend in the wind, [`GrassPatch`](grass::GrassPatch) | dynamics, sway, render |
 //! | [`fire`] | fires that lean with it and give light, [`Fire`](fire::Fire) | sway, wind, render |
 //! | [`terrain`] | random fields with the covariance of real ground, maps, splines; [`Terrain`](terrain::Terrain) | texture, render |
 //! | [`cells`] | the grid of a forest: what to plant, what is seen, stems by place; no ECS | scatter |

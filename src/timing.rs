@@ -1,11 +1,10 @@
 //! How long our systems take.
 
 use bevy::{
-    ecs::system::{Adapt, AdapterSystem, IntoAdapterSystem, IntoSystem, RunSystemError, System, SystemIn},
+    ecs::system::{Adapt, IntoAdapterSystem, IntoSystem, RunSystemError, System, SystemIn},
     prelude::*,
 };
 use std::{
-    any::TypeId,
     sync::{
         Arc, LazyLock, OnceLock,
         atomic::{AtomicU64, Ordering},
@@ -18,8 +17,6 @@ use std::{
 #[derive(Resource, Default)]
 pub struct SystemTimes {
     systems: Vec<(&'static str, Arc<AtomicU64>)>,
-    /// Of each of them.
-    types: Vec<TypeId>,
     clock: Arc<OnceLock<Clock>>,
 }
 
@@ -37,13 +34,6 @@ impl SystemTimes {
         self.systems
             .iter()
             .map(|(name, nanoseconds)| (*name, Duration::from_nanos(nanoseconds.load(Ordering::Relaxed))))
-    }
-
-    /// The name of one of them, by the type that it has in a schedule: Bevy keeps names only with its feature `debug`.
-    #[must_use]
-    pub fn name_of(&self, system: TypeId) -> Option<&'static str> {
-        let place = self.types.iter().position(|of| *of == system)?;
-        Some(self.systems[place].0)
     }
 
     /// All together, as if none ran beside another.
@@ -97,7 +87,6 @@ pub(crate) fn timed_as<Marker, S: IntoSystem<(), (), Marker>>(
     let nanoseconds = Arc::new(AtomicU64::new(0));
     let mut times = app.world_mut().resource_mut::<SystemTimes>();
     times.systems.push((name, nanoseconds.clone()));
-    times.types.push(TypeId::of::<AdapterSystem<Timed, S::System>>());
     let clock = times.clock.clone();
     IntoAdapterSystem::new(Timed { nanoseconds, clock }, system)
 }

@@ -39,7 +39,7 @@ const MAY_KNOW: [(&str, &[&str]); 16] = [
     ("query", &["sway", "tree", "wind", "dynamics"]),
     ("render", &["sway", "lod", "tree", "texture", "wind", "dynamics"]),
     ("export", &["sway", "lod", "tree", "texture", "dynamics"]),
-    ("grass", &["sway", "render"]),
+    ("grass", &["sway", "render", "dynamics"]),
     ("fire", &["sway", "wind", "render"]),
     ("forest", &["scatter", "cells", "terrain", "tree", "lod", "sway", "wind", "render"]),
     (

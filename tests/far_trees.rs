@@ -10,15 +10,22 @@ use bevy_windwood::{
         plan::{Area, Shape, Stock},
     },
 };
-use std::time::Duration;
+use image::RgbaImage;
+use std::{f32::consts::FRAC_PI_2, time::Duration};
 use support::capture;
 
 /// Sizes at which firs are 35 and 70 pixels tall.
 const SMALL: (u32, u32) = (320, 200);
 const LARGE: (u32, u32) = (640, 400);
 
-/// Number of pixels of a small forest of mature trees, 250 m away, drawn as trees or as impostors.
-fn covered(size: (u32, u32), settings: ForestSettings, (species, mature_years): (&str, f32), season: Season) -> usize {
+/// A small forest of mature trees, 250 m away, drawn as trees or as impostors, with what else is spawned.
+fn picture(
+    size: (u32, u32),
+    settings: ForestSettings,
+    (species, mature_years): (&str, f32),
+    season: Season,
+    spawn: impl FnOnce(&mut World),
+) -> RgbaImage {
     let mut app = support::headless_app(Duration::ZERO, None);
     capture::begin(&mut app).expect("a graphics device");
     let target = capture::target(&mut app, size);
@@ -37,6 +44,7 @@ fn covered(size: (u32, u32), settings: ForestSettings, (species, mature_years): 
     // The full trees, not coarser levels.
     world.resource_mut::<LevelOfDetail>().style = LevelStyle::Full;
     world.spawn((Forest::new(plan), settings));
+    spawn(world);
     world.spawn((
         capture::camera(&target),
         Projection::Perspective(PerspectiveProjection { fov: 0.45, ..default() }),
@@ -46,8 +54,20 @@ fn covered(size: (u32, u32), settings: ForestSettings, (species, mature_years): 
     assert!(ready, "the forest was not drawn in time");
     // Meshes and pipelines of the latest trees take some frames.
     (0..6).for_each(|_| capture::step(&mut app));
-    let picture = capture::capture(&mut app, &target, size).expect("a picture");
+    capture::capture(&mut app, &target, size).expect("a picture")
+}
+
+/// Number of pixels of that forest.
+fn covered(size: (u32, u32), settings: ForestSettings, kind: (&str, f32), season: Season) -> usize {
+    let picture = picture(size, settings, kind, season, |_| {});
     picture.pixels().filter(|pixel| !support::is_background(pixel)).count()
+}
+
+/// The mean column of what is not background.
+fn middle_px(picture: &RgbaImage) -> f64 {
+    let drawn = picture.enumerate_pixels().filter(|(.., pixel)| !support::is_background(pixel));
+    let (sum, count) = drawn.fold((0.0, 0), |(sum, count), (x, ..)| (sum + f64::from(x), count + 1));
+    sum / f64::from(count.max(1))
 }
 
 #[test]
@@ -68,4 +88,25 @@ fn impostors_cover_as_much_as_their_trees() {
         println!("{size:?}, {kind:?}, {season:?}: impostors over trees {ratio:.3}");
         assert!((0.9..1.1).contains(&ratio), "{kind:?}, {season:?}: impostors cover {impostors} pixels, trees {trees}");
     }
+}
+
+/// They lean away from what a game blows at them, to either side. Two pixels are a metre there, and a fir is 70 pixels tall.
+#[test]
+fn impostors_lean_before_a_jet() {
+    let far = ForestSettings { trees_to_m: 0.0, far_to_m: 400.0, ..default() };
+    let blown_from = |side: f32| {
+        let picture = picture(LARGE, far.clone(), ("fir", 80.0), Season::SUMMER, |world| {
+            world.insert_resource(Wind { speed: 1.0, ..default() });
+            // In the middle of the forest it has 0.65 of this speed, and there it is 30 m wide to either side.
+            let kind = SourceKind::Cone { speed_m_s: 100.0 * side.abs(), nozzle_radius_m: 20.0, half_angle_deg: 5.0 };
+            let jet = WindSource { age_s: 10.0, ..WindSource::new(kind).with_reach(600.0) };
+            let ahead = Quat::from_rotation_y(-side.signum() * FRAC_PI_2);
+            world.spawn((jet, Transform::from_xyz(-120.0 * side.signum(), 12.0, -260.0).with_rotation(ahead)));
+        });
+        middle_px(&picture)
+    };
+    let [from_left, still, from_right] = [1.0, 0.0, -1.0].map(blown_from);
+    println!("in the middle of the picture at {from_left} px, {still} px, {from_right} px");
+    assert!(from_left > still + 4.0 && from_right < still - 4.0, "{from_left}, {still}, {from_right}");
+    assert!(((from_left - still) / (still - from_right) - 1.0).abs() < 0.3, "{from_left}, {still}, {from_right}");
 }

@@ -2,38 +2,22 @@
 
 mod support;
 
-use bevy::{
-    core_pipeline::schedule::camera_driver,
-    math::DVec2,
-    prelude::*,
-    render::{
-        RenderApp,
-        extract_resource::{ExtractResource, ExtractResourcePlugin},
-        render_asset::RenderAssets,
-        render_resource::{
-            BindGroupEntries, BindGroupLayoutEntries, ShaderStages,
-            binding_types::{storage_buffer_read_only_sized, storage_buffer_sized},
-        },
-        renderer::RenderGraph,
-        storage::{GpuShaderBuffer, ShaderBuffer},
-    },
-    shader::Shader,
-    time::TimeUpdateStrategy,
-};
+use bevy::{math::DVec2, prelude::*, time::TimeUpdateStrategy};
 use bevy_windwood::{
+    dynamics::SweptCapsule,
     grass::{
         blades::{Blade, layout_blades},
         spine::{LINKS, push_bend, tip_bend},
-        swing::{Stretch, Swing},
+        swing::Swing,
     },
     prelude::*,
     render::SwayBuffers,
 };
 use std::time::Duration;
 use support::{
-    ReadBack, floats, headless_app,
-    probe::{ProbePass, ProbeShader},
-    read_every_frame, render_frame, update_until,
+    ReadBack, headless_app,
+    probe::{self, Bound, ProbeSource},
+    render_frame, update_until,
 };
 
 const HALF_BEND_SPEED_M_S: f32 = 10.0;
@@ -53,7 +37,7 @@ const SOURCES: [(SourceKind, Vec3); 4] = [
 const BODY: [Vec3; 2] = [Vec3::new(0.5, 0.4, -0.2), Vec3::new(0.1, 1.0, 0.3)];
 
 /// Where that body was, and where it will be, how long ago, and how blades swing behind it, as the shader has them.
-const STRETCH: Stretch = Stretch {
+const STRETCH: SweptCapsule = SweptCapsule {
     ends: [[Vec3::new(-1.0, 0.4, -0.2), Vec3::new(-1.4, 1.0, 0.3)], BODY],
     radius_m: 0.6,
     ages_s: [0.9, 0.1],
@@ -101,16 +85,6 @@ fn bend(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 ";
 
-#[derive(Resource, ExtractResource, Clone)]
-#[extract_app(RenderApp)]
-struct Probe {
-    blades: Handle<ShaderBuffer>,
-    results: Handle<ShaderBuffer>,
-    tables: SwayBuffers,
-    shader: Handle<Shader>,
-    count: u32,
-}
-
 #[test]
 fn wind_and_bent_blades_agree_on_gpu_and_cpu() {
     let sward = Sward { width_m: 4.0, depth_m: 4.0, seed: 2, ..default() };
@@ -120,10 +94,7 @@ fn wind_and_bent_blades_agree_on_gpu_and_cpu() {
     let places: Vec<Vec2> =
         (0..blades.len()).map(|k| Vec2::new(1.7 * k as f32 - 900.0, 7.3 * (k % 137) as f32 - 296.0)).collect();
     let mut app = headless_app(Duration::ZERO, None);
-    app.add_plugins(ExtractResourcePlugin::<Probe>::default());
-    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-        render_app.add_systems(RenderGraph, bend.before(camera_driver));
-    }
+    app.add_plugins(probe::plugin);
     app.finish();
     app.cleanup();
     assert!(update_until(&mut app, |world| world.resource::<ActiveSway>().is_settled()), "no wind");
@@ -140,9 +111,7 @@ fn wind_and_bent_blades_agree_on_gpu_and_cpu() {
     let mut results = Vec::new();
     for _ in 0..20 {
         render_frame(&mut app).expect("the frame is rendered");
-        if let Some(bytes) = read.lock().expect("the lock is not poisoned").take() {
-            results = rows(&bytes);
-        }
+        results = probe::rows(&read).unwrap_or(results);
     }
     assert_eq!(results.len(), blades.len() * ROWS);
     assert!(results.iter().all(|row| row.w == 1.0), "every row was written");
@@ -182,40 +151,10 @@ fn install_probe(app: &mut App, blades: &[Blade], winds: &[Vec2], places: &[Vec2
         let turn = Vec4::new(blade.azimuth_rad, blade.lean_rad, blade.droop_rad, 0.0);
         [blade.root.extend(blade.length_m), turn, Vec4::new(wind.x, wind.y, place.x, place.y)]
     });
-    let inputs: Vec<Vec4> = inputs.collect();
+    let inputs = inputs.collect();
     let world = app.world_mut();
-    let tables = world.resource::<SwayBuffers>().clone();
-    let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wesl(BEND_SHADER, "bend.wesl"));
-    let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
-    let inputs = buffers.add(ShaderBuffer::from(inputs));
-    let results = buffers.add(ShaderBuffer::from(vec![Vec4::ZERO; blades.len() * ROWS]));
-    world.insert_resource(Probe {
-        blades: inputs,
-        results: results.clone(),
-        tables,
-        shader,
-        count: blades.len() as u32,
-    });
-    read_every_frame(world, results)
-}
-
-fn rows(bytes: &[u8]) -> Vec<Vec4> {
-    floats(bytes).chunks_exact(4).map(Vec4::from_slice).collect()
-}
-
-fn bend(mut pass: ProbePass, probe: Option<Res<Probe>>, buffers: Res<RenderAssets<GpuShaderBuffer>>) {
-    let Some(probe) = probe else { return };
-    let [wind_a, wind_b] = &probe.tables.winds;
-    let bound = [&probe.blades, &probe.results, &probe.tables.frame, wind_a, wind_b].map(|handle| buffers.get(handle));
-    let [Some(a), Some(b), Some(c), Some(d), Some(e)] = bound else { return };
-    let [a, b, c, d, e] = [a, b, c, d, e].map(|buffer| buffer.buffer.as_entire_buffer_binding());
-    let table = || storage_buffer_read_only_sized(false, None);
-    let entries =
-        ((0, table()), (1, storage_buffer_sized(false, None)), (103, table()), (105, table()), (106, table()));
-    pass.run(
-        ProbeShader { entry_point: "bend", shader: &probe.shader },
-        &BindGroupLayoutEntries::with_indices(ShaderStages::COMPUTE, entries),
-        &BindGroupEntries::with_indices(((0, a), (1, b), (103, c), (105, d), (106, e))),
-        [probe.count.div_ceil(64), 1],
-    );
+    let SwayBuffers { frame, winds: [wind_a, wind_b], .. } = world.resource::<SwayBuffers>().clone();
+    let tables = [(103, frame), (105, wind_a), (106, wind_b)].map(|(binding, table)| (binding, Bound::Table(table)));
+    let shader = ProbeSource { entry_point: "bend", wesl: BEND_SHADER };
+    probe::install(world, shader, inputs, [blades.len(), ROWS], tables)
 }

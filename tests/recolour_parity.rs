@@ -3,31 +3,15 @@
 
 mod support;
 
-use bevy::{
-    core_pipeline::schedule::camera_driver,
-    prelude::*,
-    render::{
-        RenderApp,
-        extract_resource::{ExtractResource, ExtractResourcePlugin},
-        render_asset::RenderAssets,
-        render_resource::{
-            BindGroupEntries, BindGroupLayoutEntries, BufferUsages, ShaderStages,
-            binding_types::{storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer_sized},
-        },
-        renderer::RenderGraph,
-        storage::{GpuShaderBuffer, ShaderBuffer},
-    },
-    shader::Shader,
-};
+use bevy::prelude::*;
 use bevy_windwood::tree::{
     phenology::Phenology,
     recolour::{Recolouring, SeasonColour, leafness},
 };
-use std::{num::NonZeroU64, time::Duration};
+use std::time::Duration;
 use support::{
-    floats, headless_app,
-    probe::{ProbePass, ProbeShader},
-    read_every_frame, render_frame,
+    headless_app,
+    probe::{self, ProbeSource},
 };
 
 /// A sample is two rows: a colour and the change; the tone. The result is the colour then, and how much of it is leaf.
@@ -48,19 +32,6 @@ fn recolour(@builtin(global_invocation_id) id: vec3<u32>) {
 ";
 /// Colour of leaves in summer, sRGB.
 const SUMMER: [f32; 3] = [0.19, 0.33, 0.10];
-/// Bytes of `Phenology` of the shader.
-const UNIFORM_BYTES: u64 = 80;
-const MOST_FRAMES: usize = 200;
-
-#[derive(Resource, ExtractResource, Clone)]
-#[extract_app(RenderApp)]
-struct Probe {
-    samples: Handle<ShaderBuffer>,
-    colours: Handle<ShaderBuffer>,
-    phenology: Handle<ShaderBuffer>,
-    shader: Handle<Shader>,
-    count: u32,
-}
 
 /// Colours all over the cube, black and white among them, in all seasons.
 fn samples() -> Vec<(Vec3, SeasonColour)> {
@@ -97,11 +68,10 @@ fn leaves_have_the_same_colours_in_rust_and_in_the_shader() {
 
 fn on_gpu(samples: &[(Vec3, SeasonColour)], phenology: &Phenology) -> Vec<Vec4> {
     let mut app = headless_app(Duration::ZERO, None);
-    app.add_plugins(ExtractResourcePlugin::<Probe>::default());
-    app.sub_app_mut(RenderApp).add_systems(RenderGraph, recolour.before(camera_driver));
+    app.add_plugins(probe::plugin);
     app.finish();
     app.cleanup();
-    let rows: Vec<Vec4> = samples
+    let rows = samples
         .iter()
         .flat_map(|(summer, season)| [summer.extend(season.change), Vec4::new(season.tone, 0.0, 0.0, 0.0)])
         .collect();
@@ -109,44 +79,10 @@ fn on_gpu(samples: &[(Vec3, SeasonColour)], phenology: &Phenology) -> Vec<Vec4> 
     let luminance = light(SUMMER).truncate().dot(Vec3::new(0.2126, 0.7152, 0.0722));
     let [first, last] = phenology.autumn_colours.map(light);
     let spring = light(phenology.spring_colour).truncate().extend(luminance);
-    // The times of the year do not matter here.
-    let mut uniform = ShaderBuffer::from(vec![Vec4::ZERO, Vec4::ZERO, spring, first, last]);
-    uniform.buffer_usage |= BufferUsages::UNIFORM;
     let world = app.world_mut();
-    let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wesl(RECOLOUR_SHADER, "recolour.wesl"));
-    let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
-    let phenology = buffers.add(uniform);
-    let sampled = buffers.add(ShaderBuffer::from(rows));
-    let colours = buffers.add(ShaderBuffer::from(vec![Vec4::ZERO; samples.len()]));
-    let count = samples.len() as u32;
-    world.insert_resource(Probe { samples: sampled, colours: colours.clone(), phenology, shader, count });
-    let read = read_every_frame(world, colours);
-    for _ in 0..MOST_FRAMES {
-        render_frame(&mut app).unwrap();
-        let Some(bytes) = read.lock().unwrap().take() else { continue };
-        let colours: Vec<Vec4> = floats(&bytes).chunks_exact(4).map(Vec4::from_slice).collect();
-        if colours.len() == samples.len() && colours.iter().all(|colour| colour.w > 0.5) {
-            return colours;
-        }
-    }
-    panic!("the GPU did not write every colour");
-}
-
-fn recolour(mut pass: ProbePass, probe: Option<Res<Probe>>, buffers: Res<RenderAssets<GpuShaderBuffer>>) {
-    let Some(probe) = probe else { return };
-    let bound = [&probe.samples, &probe.colours, &probe.phenology].map(|handle| buffers.get(handle));
-    let [Some(samples), Some(colours), Some(phenology)] = bound else { return };
-    let [samples, colours, phenology] =
-        [samples, colours, phenology].map(|buffer| buffer.buffer.as_entire_buffer_binding());
-    let entries = (
-        (0, storage_buffer_read_only_sized(false, None)),
-        (1, storage_buffer_sized(false, None)),
-        (107, uniform_buffer_sized(false, NonZeroU64::new(UNIFORM_BYTES))),
-    );
-    pass.run(
-        ProbeShader { entry_point: "recolour", shader: &probe.shader },
-        &BindGroupLayoutEntries::with_indices(ShaderStages::COMPUTE, entries),
-        &BindGroupEntries::with_indices(((0, samples), (1, colours), (107, phenology))),
-        [probe.count.div_ceil(64), 1],
-    );
+    // `Phenology` of the shader. The times of the year do not matter here.
+    let phenology = probe::uniform(world, vec![Vec4::ZERO, Vec4::ZERO, spring, first, last]);
+    let shader = ProbeSource { entry_point: "recolour", wesl: RECOLOUR_SHADER };
+    let read = probe::install(world, shader, rows, [samples.len(), 1], [(107, phenology)]);
+    probe::read_all(&mut app, &read, |colour| colour.w > 0.5).unwrap()
 }

@@ -4,7 +4,7 @@
 use super::{
     capture::{self, create_folder, save},
     daylight::Daylight,
-    dusk,
+    dusk, meadow,
     options::ImageOptions,
     pictures::{TIMEOUT, WARM_UP_FRAMES, is_drawn, let_time_pass},
     scene::no_plan_failed,
@@ -179,15 +179,7 @@ pub fn spawn_meadow(mut commands: Commands) {
         [(8.0, 11.0, short, [12.0, 34.0]), (20.0, 1.2, broad, [30.0, 110.0])]
     {
         let sward = Sward { width_m: side_m, depth_m: side_m, tufts_per_m2, tuft, ..default() };
-        let look = GrassLook {
-            root_colour: [0.035, 0.055, 0.016],
-            tip_colour: [0.125, 0.19, 0.05],
-            dry_colour: [0.22, 0.20, 0.10],
-            thins_from_m,
-            vanishes_at_m,
-            ..default()
-        };
-        let patch = GrassPatch { sward, look, ..default() };
+        let patch = GrassPatch { sward, look: meadow::look(thins_from_m, vanishes_at_m), ..default() };
         let ground = GrassGround(Arc::new(meadow_height_m));
         commands.spawn((GrassField { patch, patches_per_frame: 16 }, ground, NotShadowCaster));
     }

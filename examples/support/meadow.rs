@@ -42,7 +42,7 @@ fn broad() -> Tuft {
 }
 
 /// The colours of the ground's own grass.
-fn look(thins_from_m: f32, vanishes_at_m: f32) -> GrassLook {
+pub fn look(thins_from_m: f32, vanishes_at_m: f32) -> GrassLook {
     GrassLook {
         root_colour: [0.035, 0.055, 0.016],
         tip_colour: [0.125, 0.19, 0.05],

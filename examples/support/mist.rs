@@ -1,7 +1,7 @@
 //! Mist among trees, in which shafts of sunlight are seen.
 
+use super::cameras;
 use bevy::{
-    ecs::lifecycle::Add,
     light::{FogVolume, VolumetricFog, VolumetricLight},
     prelude::*,
 };
@@ -26,13 +26,5 @@ pub fn lay(commands: &mut Commands, sun: Entity, sky: Color, centre: Vec3, size_
     };
     commands.spawn((mist, Transform::from_translation(centre).with_scale(size_m)));
     let fog = VolumetricFog { ambient_color: sky, ambient_intensity: SKY_INTENSITY, step_count: STEPS, jitter: 0.5 };
-    commands.queue(move |world: &mut World| {
-        let cameras: Vec<Entity> = world.query_filtered::<Entity, With<Camera3d>>().iter(world).collect();
-        for camera in cameras {
-            world.entity_mut(camera).insert(fog);
-        }
-        world.add_observer(move |camera: On<Add<Camera3d>>, mut commands: Commands| {
-            commands.entity(camera.entity).insert(fog);
-        });
-    });
+    commands.queue(move |world: &mut World| cameras::give(world, fog));
 }

@@ -4,6 +4,7 @@
 #![allow(dead_code)]
 
 pub mod arguments;
+pub mod cameras;
 pub mod capture;
 pub mod course;
 pub mod daylight;

@@ -1,7 +1,7 @@
 //! A sky: a dome around the scene with a colour for each direction, and the light that comes from it.
 
+use super::cameras;
 use bevy::{
-    ecs::lifecycle::Add,
     light::{NotShadowCaster, NotShadowReceiver},
     mesh::VertexAttributeValues,
     prelude::*,
@@ -40,13 +40,7 @@ impl SkyLight {
         commands.insert_resource(GlobalAmbientLight::NONE);
         commands.queue(move |world: &mut World| {
             let light = self.environment(&mut world.resource_mut::<Assets<Image>>());
-            let cameras: Vec<Entity> = world.query_filtered::<Entity, With<Camera3d>>().iter(world).collect();
-            for camera in cameras {
-                world.entity_mut(camera).insert(light.clone());
-            }
-            world.add_observer(move |camera: On<Add<Camera3d>>, mut commands: Commands| {
-                commands.entity(camera.entity).insert(light.clone());
-            });
+            cameras::give(world, light);
         });
     }
 

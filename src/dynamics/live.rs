@@ -17,5 +17,5 @@ mod contact;
 mod oscillators;
 
 pub use beam::LiveBeam;
-pub use contact::{Capsule, Contacts, strike};
+pub use contact::{Capsule, Contacts, SweptCapsule, strike};
 pub use oscillators::{BeamLoad, LiveSteps, LiveTree};

@@ -51,7 +51,7 @@ pub use direction_map::{DirectionMap, LoadCoefficients};
 pub use exact_step::{ExactStep, OscillatorState};
 pub use frequency_classes::FrequencyClasses;
 pub use leaf::{LeafResponse, RestingLeaf};
-pub use live::{BeamLoad, Capsule, Contacts, LiveBeam, LiveSteps, LiveTree, strike};
+pub use live::{BeamLoad, Capsule, Contacts, LiveBeam, LiveSteps, LiveTree, SweptCapsule, strike};
 pub use load_basis::{LoadBasis, LoadBasisKind};
 pub use mean_wind::MeanWind;
 pub use oscillator_grid::{OscillatorGrid, RowWeights};

@@ -10,8 +10,8 @@
 //!   - what is edited: `document` (anything with a file), `species_document`, `plan_document`, `ground_documents`; `session` and
 //!     `file_session`, `steps`, `history`, `document_file`, and `ron_tree` and `ron_merge`, which write changes into the text that a person wrote;
 //!     `randomiser` and `envelope_handles` for a species; `live_settings` for what the program has without a file;
-//!   - a wood: `woods` (what is chosen, the tool in hand), `plan_element` (areas and what is kept free, by their corners), `brush`,
-//!     `quadrat_histogram`;
+//!   - a wood: `woods` (what is chosen, the tool in hand, masks as pictures), `plan_element` (areas and what is kept free, by their
+//!     corners), `brush`, `quadrat_histogram`;
 //!   - ground: `ground_desk`, `spline_points`, `ground_variogram`, `map_fit`;
 //!   - what is shown: `stage` (which trees, from where), `land_pose` and `scene_view` (a wood or ground), `diagram` (other views of a
 //!     tree), `wind_measures` and `tip_motion` with `spectrum`, `costs`.

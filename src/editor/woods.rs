@@ -1,5 +1,7 @@
 //! A wood that is edited: its plan, what is chosen of it, and the tool in hand.
 
+mod mask_file;
+
 use std::sync::Arc;
 
 use bevy::math::Vec2;
@@ -62,6 +64,10 @@ pub struct Woods {
     pub corner: Option<usize>,
     pub tool: Tool,
     pub brush: Brush,
+    /// Where the chosen area's mask is saved and loaded, as it was typed.
+    pub mask_path: String,
+    /// Why it was not.
+    pub mask_error: Option<String>,
     grip: Option<Grip>,
     /// Whether it is held without a pointer.
     pub is_held_by_keys: bool,
@@ -77,6 +83,8 @@ impl Woods {
             corner: None,
             tool: Tool::default(),
             brush: Brush::default(),
+            mask_path: String::new(),
+            mask_error: None,
             grip: None,
             is_held_by_keys: false,
             table: None,
@@ -95,6 +103,7 @@ impl Woods {
     pub fn choose(&mut self, element: Element) {
         if self.chosen != Some(element) {
             (self.chosen, self.corner) = (Some(element), None);
+            self.mask_error = None;
         }
     }
 

@@ -164,7 +164,8 @@ impl<'a> LeafLook<'a> {
         (own / mean).clamp(Vec3::ZERO, Vec3::splat(GREATEST_FACTOR))
     }
 
-    /// Light lost in the crown and natural variation, as in `shade` of the renderer's `tree_vertex.wesl`.
+    /// Light lost in the crown and natural variation, as in the renderer's `leaf_shade.wesl`. But all of that loss is in the colour: other
+    /// renderers do not know how much of the sky's light arrives.
     fn shade(&self, light: f32, tint: f32) -> Vec3 {
         let light = (0.25 + 0.75 * light) * (0.85 + 0.35 * tint);
         let warmth = tint + self.own;

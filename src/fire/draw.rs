@@ -9,6 +9,7 @@ use crate::{
     plugin_checks::{has_renderer, require_renderer_before},
     removal::remove_made,
     render::{RenderCapabilities, SwayBuffers},
+    schedule::WindwoodSystems,
     wind::WindClock,
 };
 use bevy::{
@@ -36,7 +37,14 @@ impl Plugin for FireDrawPlugin {
         ))
         .register_type::<FireLight>()
         .add_observer(remove_made::<Fire, FireLight, FireMesh>)
-        .add_systems(Update, (show_fires, flicker_lights).chain().after(generate_flames).run_if(can_draw));
+        .add_systems(
+            Update,
+            (show_fires, flicker_lights)
+                .chain()
+                .after(generate_flames)
+                .before(WindwoodSystems::SelectLod)
+                .run_if(can_draw),
+        );
     }
 
     fn finish(&self, app: &mut App) {

@@ -7,6 +7,7 @@ use super::{
     cell_planter::CellPlanter,
     change_index::ChangeIndex,
     components::ForestSettings,
+    known_tiles::{KnownTile, UpToDate},
     near::{CellTask, NearTrees},
     planted_tile::{PlantedTile, cells_of_tile},
     reach::{known_m, tile_of, tile_stream},
@@ -77,26 +78,6 @@ pub struct ForestCells {
     generation: u64,
     /// The generation since which tiles and numbers of species are the same.
     pub(super) tiles_since: u64,
-}
-
-/// A tile whose cells are in the store.
-pub(super) struct KnownTile {
-    /// Of the plants that the store and the impostors have; none where some of them are known to be others.
-    pub fingerprint: Option<u64>,
-    pub is_outdated: bool,
-}
-
-/// The tiles that are up to date.
-struct UpToDate<'a>(&'a HashMap<IVec2, KnownTile>);
-
-impl CellSet for UpToDate<'_> {
-    fn contains(&self, tile: IVec2) -> bool {
-        self.0.get(&tile).is_some_and(|tile| !tile.is_outdated)
-    }
-
-    fn visit(&self, visit: impl FnMut(IVec2)) {
-        self.0.iter().filter(|(_, tile)| !tile.is_outdated).map(|(tile, _)| *tile).for_each(visit);
-    }
 }
 
 impl ForestCells {
@@ -187,6 +168,14 @@ impl ForestCells {
         self.stream.is_complete()
     }
 
+    /// The share of the tiles about the viewers that are planted as the plan says, 0 to 1.
+    #[cfg(feature = "editor")]
+    pub(crate) fn planted_share(&self) -> f32 {
+        let planted = self.tiles.len() - self.outdated;
+        let wanted = planted + self.stream.waiting() + self.stream.ordered();
+        planted as f32 / wanted.max(1) as f32
+    }
+
     /// The stems about the viewers, as far as trees of any kind are drawn: ask it who stands where, and what a ray hits.
     #[must_use]
     pub fn store(&self) -> &CellStore {
@@ -255,7 +244,7 @@ impl ForestCells {
     }
 
     /// Grows whenever the forest begins anew.
-    pub(super) fn generation(&self) -> u64 {
+    pub(crate) fn generation(&self) -> u64 {
         self.generation
     }
 

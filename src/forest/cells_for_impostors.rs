@@ -1,9 +1,7 @@
 //! What impostors need of the cells of a forest.
 
 use super::{
-    cells::{ForestCells, KnownTile},
-    planted_tile::PlantedTile,
-    reach::tile_stream,
+    cells::ForestCells, known_tiles::KnownTile, planted_tile::PlantedTile, reach::tile_stream,
     tree_impostors::TreeImpostors,
 };
 use crate::render::impostors::near_mask::MaskRange;

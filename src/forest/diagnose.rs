@@ -1,7 +1,7 @@
 //! How the forest does: counts and times among Bevy's diagnostics, and its cells as boxes.
 
 use super::{cells::ForestCells, cull::CulledCells, impostors::ForestImpostors};
-use crate::{render::draw::counts::TreesByLod, timing::SystemTimes};
+use crate::{render::draw::counts::TreesByLod, schedule::WindwoodSystems, timing::SystemTimes};
 use bevy::{
     diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic},
     gizmos::GizmoPlugin,
@@ -129,7 +129,8 @@ impl Plugin for ForestGizmoPlugin {
     /// Whether there are gizmos is known only when all plugins have been added.
     fn finish(&self, app: &mut App) {
         if app.is_plugin_added::<GizmoPlugin>() {
-            app.add_systems(PostUpdate, draw_cells.run_if(|settings: Res<ForestGizmos>| settings.enabled));
+            let draw = draw_cells.after(WindwoodSystems::Cull).after(WindwoodSystems::Upload);
+            app.add_systems(PostUpdate, draw.run_if(|settings: Res<ForestGizmos>| settings.enabled));
         }
     }
 }

@@ -3,7 +3,7 @@
 //! - [`Forest`] stands on a [`Terrain`](crate::terrain::Terrain), on ground of your own ([`ForestGround`]), or on the level.
 //! - `begin` makes a forest's plan ready, when it is new or has changed.
 //! - `cells` plants the forest's voxel grid ([`CellStore`](crate::cells::CellStore)) in the background, as far as trees are
-//!   drawn at all, one `planted_tile` after another; what nobody is near to goes again. Ask [`ForestCells::store`] who stands where. Near
+//!   drawn at all, one `planted_tile` after another (`known_tiles`); what nobody is near to goes again. Ask [`ForestCells::store`] who stands where. Near
 //!   trees and impostors take the plants of a tile when it comes.
 //! - `near` and `stream_trees` spawn the plants of near cells as [`Tree`](crate::tree::Tree)s, a few a frame. What stands where follows from
 //!   the plan alone, in whatever order cells come. When the plan changes, trees that both plans have stay.
@@ -45,6 +45,7 @@ mod give_canopies;
 #[cfg(feature = "render")]
 mod impostors;
 mod journal;
+mod known_tiles;
 #[cfg(feature = "render")]
 mod layers;
 mod messages;

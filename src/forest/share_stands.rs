@@ -22,8 +22,9 @@ pub(super) fn share_stands(
             let others = known.iter().filter(|(other, ..)| *other != entity);
             others.map(|(_, stand, origin)| OtherStand { stand: stand.clone(), offset_m: at - *origin })
         };
+        // All of these are known but its own.
         let is_as_before =
-            stands.others.len() == others().count() && stands.others.iter().zip(others()).all(|(a, b)| a.is_as(&b));
+            stands.others.len() + 1 == known.len() && stands.others.iter().zip(others()).all(|(a, b)| a.is_as(&b));
         if !is_as_before {
             let others = others().collect();
             forest.bypass_change_detection().set_other_stands(others);

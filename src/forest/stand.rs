@@ -78,8 +78,11 @@ impl ExpectedTrees {
 }
 
 impl Stand {
-    /// Adds what stands at a place (x, z) of the forest.
+    /// Adds what stands at a place (x, z) of the forest. Where no species can be loaded nothing does, and the ground is not asked.
     pub fn add_trees_at(&self, at: DVec2, trees: &mut ExpectedTrees) {
+        if self.species.iter().all(Option::is_none) {
+            return;
+        }
         let balance = self.balances.get(&self.planter.cell_at(at.as_vec2())).copied().unwrap_or_default();
         self.planter.expected_stock(at, &self.ground, |stock| {
             let Some(Some(species)) = self.species.get(usize::from(stock.species)) else { return };

@@ -12,22 +12,12 @@
 //! has to make way, but one that swings against it: that is stopped by twice as much, so that nothing jumps.
 
 use super::spine::{LEAST_M, push_bend};
+use crate::dynamics::SweptCapsule;
 use bevy::math::{Vec2, Vec3};
 use std::f32::consts::TAU;
 
 /// After this time a blade has come to rest, s; from the first time on, that is hastened.
 pub const REST_S: [f32; 2] = [1.5, 2.0];
-
-/// A stretch of a body's way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
-    /// The ends of the line along which the ball is moved: where the stretch begins, and where it ends, m.
-    pub ends: [[Vec3; 2]; 2],
-    /// Radius of the ball, m.
-    pub radius_m: f32,
-    /// How long ago the body was at its beginning and its end, s.
-    pub ages_s: [f32; 2],
-}
 
 /// How a blade swings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,10 +46,10 @@ impl Swing {
     }
 
     /// The vector by which bodies turn the tip of a blade, rad: those that are there now, `held`, and those that have been there.
-    pub fn tip(&self, held: Vec2, root: Vec3, length_m: f32, stretches: &[Stretch], fallback: Vec2) -> Vec2 {
+    pub fn tip(&self, held: Vec2, root: Vec3, length_m: f32, stretches: &[SweptCapsule], fallback: Vec2) -> Vec2 {
         let (mut most, mut left) = (0.0, Vec2::ZERO);
         for stretch in stretches {
-            let (push, age_s) = stretch.push(root, length_m, fallback);
+            let (push, age_s) = push_by(stretch, root, length_m, fallback);
             let strength = push.length() * self.envelope(age_s);
             if strength > most {
                 (most, left) = (strength, push * self.share(age_s));
@@ -80,17 +70,15 @@ fn hold(swinging: Vec2, held: Vec2) -> Vec2 {
     swinging + direction * (least - swinging.dot(direction).max(-least)).max(0.0)
 }
 
-impl Stretch {
-    /// How far a body turned the tip of a blade when it was nearest to it, rad, and how long ago that was, s.
-    fn push(&self, root: Vec3, length_m: f32, fallback: Vec2) -> (Vec2, f32) {
-        let middle = root + Vec3::Y * (0.5 * length_m);
-        let [[from_a, from_b], [to_a, to_b]] = self.ends;
-        let u = share_along(middle, from_a, from_b);
-        let (from, to) = (from_a.lerp(from_b, u), to_a.lerp(to_b, u));
-        let v = share_along(middle, from, to);
-        let push = push_bend(root, length_m, [from_a.lerp(to_a, v), from_b.lerp(to_b, v)], self.radius_m, fallback);
-        (push, self.ages_s[0] + (self.ages_s[1] - self.ages_s[0]) * v)
-    }
+/// How far a body turned the tip of a blade when it was nearest to it, rad, and how long ago that was, s.
+fn push_by(stretch: &SweptCapsule, root: Vec3, length_m: f32, fallback: Vec2) -> (Vec2, f32) {
+    let middle = root + Vec3::Y * (0.5 * length_m);
+    let [[from_a, from_b], [to_a, to_b]] = stretch.ends;
+    let u = share_along(middle, from_a, from_b);
+    let (from, to) = (from_a.lerp(from_b, u), to_a.lerp(to_b, u));
+    let v = share_along(middle, from, to);
+    let push = push_bend(root, length_m, [from_a.lerp(to_a, v), from_b.lerp(to_b, v)], stretch.radius_m, fallback);
+    (push, stretch.ages_s[0] + (stretch.ages_s[1] - stretch.ages_s[0]) * v)
 }
 
 /// Where on a line, from 0 to 1, it is nearest to a place.
@@ -107,9 +95,9 @@ mod tests {
     const LENGTH_M: f32 = 0.5;
 
     /// A ball of half a metre that goes along x at 2 m/s and is at a place now.
-    fn passed(now_m: f32) -> Stretch {
+    fn passed(now_m: f32) -> SweptCapsule {
         let ends = [Vec3::new(now_m - 4.0, 0.3, 0.0); 2];
-        Stretch { ends: [ends, ends.map(|end| end + Vec3::X * 4.0)], radius_m: 0.5, ages_s: [2.0, 0.0] }
+        SweptCapsule { ends: [ends, ends.map(|end| end + Vec3::X * 4.0)], radius_m: 0.5, ages_s: [2.0, 0.0] }
     }
 
     /// Against the equation of motion, step by step.
@@ -158,9 +146,9 @@ mod tests {
     #[test]
     fn of_several_stretches_that_counts_of_which_most_is_left() {
         let root = Vec3::new(0.0, 0.0, 0.2);
-        let old = Stretch { ages_s: [1.2, 1.1], ..passed(2.0) };
-        let new = Stretch { ages_s: [0.3, 0.1], ..passed(2.0) };
-        let tip = |stretches: &[Stretch]| SWING.tip(Vec2::ZERO, root, LENGTH_M, stretches, Vec2::X);
+        let old = SweptCapsule { ages_s: [1.2, 1.1], ..passed(2.0) };
+        let new = SweptCapsule { ages_s: [0.3, 0.1], ..passed(2.0) };
+        let tip = |stretches: &[SweptCapsule]| SWING.tip(Vec2::ZERO, root, LENGTH_M, stretches, Vec2::X);
         assert_eq!(tip(&[old, new]), tip(&[new]));
         assert_eq!(tip(&[new, old]), tip(&[new]));
         assert_eq!(tip(&[]), Vec2::ZERO);

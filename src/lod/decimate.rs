@@ -123,7 +123,7 @@ impl WoodVertices {
 }
 
 /// A share of the sprays, enlarged so that they have the area of all.
-fn fewer_leaves(leaves: &LeafVertices, share: f32) -> LeafVertices {
+pub(super) fn fewer_leaves(leaves: &LeafVertices, share: f32) -> LeafVertices {
     let sprays = sprays(leaves);
     let stays = |&(index, _): &(usize, &Spray)| is_chosen(index, share);
     let mut out = LeafVertices::default();

@@ -1,7 +1,7 @@
 //! The levels of a tree that are its own meshes thinned: how much of it each species bears to lose.
 
 use super::{
-    decimate::{DecimatedMeshes, coarse_thick_wood, decimate, prunable_radius_m, thick_wood},
+    decimate::{DecimatedMeshes, coarse_thick_wood, fewer_leaves, prunable_radius_m, thick_wood},
     screen_size::{Lens, LodScreenSizes},
     settings::{Decimation, LodBakeSettings},
 };
@@ -45,19 +45,19 @@ pub fn thinned_meshes(species: &Species, model: &TreeModel, settings: &LodBakeSe
 /// One of them: the level of that number, from 0.
 pub(crate) fn thinned(species: &Species, model: &TreeModel, number: usize, wanted: &Decimation) -> ThinnedMeshes {
     let decimation = bearable(species, model, wanted);
-    let mut meshes = decimate(model, &decimation.in_leaf);
-    if is_coarse(number) {
-        meshes.wood = coarse_thick_wood(species, &model.skeleton, decimation.in_leaf.least_radius_m);
-    }
-    if let Growth::Impressionist(crown) = &species.growth {
-        let begin_m = LodScreenSizes::default().distances_of_three_m(crown.height_m, Lens::default())[number];
-        meshes.leaves = leaves_at(crown, &model.skeleton, begin_m);
-    }
-    let bare_wood = |radius_m| match is_coarse(number) {
+    let wood = |radius_m| match is_coarse(number) {
         true => coarse_thick_wood(species, &model.skeleton, radius_m),
         false => thick_wood(&model.wood, &model.skeleton, radius_m),
     };
-    ThinnedMeshes { meshes, bare_wood: decimation.bare_radius_m.map(bare_wood) }
+    let leaves = match &species.growth {
+        Growth::Impressionist(crown) => {
+            let begin_m = LodScreenSizes::default().distances_of_three_m(crown.height_m, Lens::default())[number];
+            leaves_at(crown, &model.skeleton, begin_m)
+        }
+        _ => fewer_leaves(&model.leaves, decimation.in_leaf.leaf_share),
+    };
+    let meshes = DecimatedMeshes { wood: wood(decimation.in_leaf.least_radius_m), leaves };
+    ThinnedMeshes { meshes, bare_wood: decimation.bare_radius_m.map(wood) }
 }
 
 /// Whether a thinned level, by its number from 0, is made for trees that are a quarter of a screen high and less: its tubes have few sides.

@@ -130,7 +130,7 @@ impl Plugin for TreeRenderPlugin {
             (
                 prepare.chain().after(regrow_trees).in_set(WindwoodSystems::Bake).run_if(can_draw),
                 draw.chain().in_set(WindwoodSystems::SelectLod).run_if(can_draw),
-                light,
+                light.after(WindwoodSystems::Bake),
                 pack.after(update_wind_exposure).before(WindwoodSystems::SelectLod),
             ),
         )

@@ -21,6 +21,7 @@ pub(crate) fn load_shaders(app: &mut App) {
     load_shader_library!(app, "shaders/season.wesl");
     load_shader_library!(app, "shaders/surface.wesl");
     load_shader_library!(app, "shaders/tree_transform.wesl");
+    load_shader_library!(app, "shaders/under_trees.wesl");
     load_shader_library!(app, "shaders/vertex_output.wesl");
     load_shader_library!(app, "shaders/view_direction.wesl");
     load_shader_library!(app, "shaders/sky_share.wesl");

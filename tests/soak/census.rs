@@ -7,7 +7,10 @@ use bevy::{
         texture::GpuImage,
     },
 };
-use bevy_windwood::tree::{SpeciesModels, TreeModel};
+use bevy_windwood::{
+    prelude::*,
+    tree::{SpeciesModels, TreeModel},
+};
 use std::collections::BTreeMap;
 
 /// What there is in an app.
@@ -29,6 +32,10 @@ impl Census {
         let world = app.world_mut();
         let mut counts = BTreeMap::from([
             ("entities", world.query::<Entity>().iter(world).count()),
+            ("trees", world.query::<&Tree>().iter(world).count()),
+            ("entities with meshes", world.query::<&Mesh3d>().iter(world).count()),
+            ("entities with parents", world.query::<&ChildOf>().iter(world).count()),
+            ("wind cells", world.query::<&WindCell>().iter(world).count()),
             ("meshes", world.resource::<Assets<Mesh>>().len()),
             ("images", world.resource::<Assets<Image>>().len()),
             ("buffers", world.resource::<Assets<ShaderBuffer>>().len()),

@@ -61,11 +61,16 @@ const SCENES: [(&str, Stand, [&str; 4]); 4] = [
 /// What the passes of a frame did: by pass and quantity.
 type Passes = BTreeMap<(String, String), f64>;
 
-/// Measures scenes of up to that many trees, and writes a picture of each.
-pub fn run(most_trees: u32, folder: &Path) -> Report {
+/// Measures scenes of up to that many trees, and writes a picture of each. Trees cast the shadows of their impostors from so many of their
+/// heights on, where that is given.
+pub fn run(most_trees: u32, shadow_impostors_from_heights: Option<f32>, folder: &Path) -> Report {
     let mut report = Report::default();
     for (name, stand, keys) in SCENES.into_iter().filter(|(_, stand, _)| stand.trees <= most_trees) {
-        match measure(&stand, &folder.join(format!("cost_{}_{}.png", stand.species, stand.trees))) {
+        match measure(
+            &stand,
+            shadow_impostors_from_heights,
+            &folder.join(format!("cost_{}_{}.png", stand.species, stand.trees)),
+        ) {
             Ok(cost) => record(&mut report, name, &cost, keys),
             Err(error) => {
                 eprintln!("{name}: {error}");
@@ -110,10 +115,13 @@ fn levels(app: &mut App) -> Levels {
     levels
 }
 
-fn measure(stand: &Stand, picture: &Path) -> Result<Cost, String> {
+fn measure(stand: &Stand, shadow_impostors_from_heights: Option<f32>, picture: &Path) -> Result<Cost, String> {
     let mut app = App::new();
     app.add_plugins((capture::headless_engine(None), WindwoodPlugins, RenderDiagnosticsPlugin));
     capture::begin(&mut app)?;
+    if let Some(heights) = shadow_impostors_from_heights {
+        app.world_mut().resource_mut::<LevelOfDetail>().shadow_impostors_from_heights = heights;
+    }
     let camera = if stand.trees == 1 { spawn_tree(&mut app, stand)? } else { grid::spawn_forest(&mut app, stand)? };
     let target = capture::target(&mut app, SIZE);
     app.world_mut().entity_mut(camera).insert(capture::camera(&target));

@@ -117,6 +117,9 @@ struct Options {
     /// `levels`: time of the year: 0 midwinter, 0.34 spring, 0.55 summer, 0.81 autumn.
     #[arg(long, default_value_t = Season::SUMMER.year)]
     year: f32,
+    /// `cost`: from how many of their heights on trees cast the shadows of their impostors, in place of the default.
+    #[arg(long)]
+    shadow_impostors_from_heights: Option<f32>,
     /// Folder for charts and pictures.
     #[arg(long, default_value = "out")]
     out: PathBuf,
@@ -146,7 +149,7 @@ fn main() -> ExitCode {
         Topic::Trees => trees::run(),
         Topic::Figure9 => figure9::run(options.frames, options.trees, &options.out.join("figure9.png")),
         Topic::Grid => grid::run(options.frames, options.trees, &options.out),
-        Topic::Cost => cost::run(options.trees, &options.out),
+        Topic::Cost => cost::run(options.trees, options.shadow_impostors_from_heights, &options.out),
         #[cfg(feature = "editor")]
         Topic::Editor => editor::run(),
         Topic::Levels => levels::run(&options.out.join("levels.png"), options.species.as_deref(), options.year),

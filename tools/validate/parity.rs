@@ -8,27 +8,11 @@
 use crate::{
     report::Report,
     support::{
-        self,
-        probe::{ProbePass, ProbeShader},
+        self, ReadBack,
+        probe::{self, Bound, ProbeSource},
     },
 };
-use bevy::{
-    core_pipeline::schedule::camera_driver,
-    prelude::*,
-    render::{
-        RenderApp,
-        extract_resource::{ExtractResource, ExtractResourcePlugin},
-        render_asset::RenderAssets,
-        render_resource::{
-            BindGroupEntries, BindGroupLayoutEntries, ShaderStages,
-            binding_types::{storage_buffer_read_only_sized, storage_buffer_sized},
-        },
-        renderer::RenderGraph,
-        storage::{GpuShaderBuffer, ShaderBuffer},
-    },
-    shader::Shader,
-    time::TimeUpdateStrategy,
-};
+use bevy::{prelude::*, time::TimeUpdateStrategy};
 use bevy_windwood::{dynamics::BeamPose, prelude::*, render::SwayBuffers, sway::TreePose, tree::TreeModel};
 use std::time::Duration;
 
@@ -48,12 +32,12 @@ const CANOPIES: [Canopy; 2] = [
 
 const CARRY_SHADER: &str = "
 import bevy_windwood::render::shaders::{beam::carry, frame::Frame, instances::{BeamPose, BeamRow, TreeRow}};
-@group(0) @binding(0) var<storage, read> poses: array<BeamPose>;
-@group(0) @binding(1) var<storage, read> beams: array<BeamRow>;
-@group(0) @binding(2) var<storage, read> trees: array<TreeRow>;
-@group(0) @binding(3) var<storage, read> frame: Frame;
-@group(0) @binding(4) var<storage, read> points: array<vec4<f32>>;
-@group(0) @binding(5) var<storage, read_write> carried: array<vec4<f32>>;
+@group(0) @binding(0) var<storage, read> points: array<vec4<f32>>;
+@group(0) @binding(1) var<storage, read_write> carried: array<vec4<f32>>;
+@group(0) @binding(2) var<storage, read> poses: array<BeamPose>;
+@group(0) @binding(3) var<storage, read> beams: array<BeamRow>;
+@group(0) @binding(4) var<storage, read> trees: array<TreeRow>;
+@group(0) @binding(5) var<storage, read> frame: Frame;
 // A vertex is two rows of `points`: place at rest and beam; place on the beam.
 @compute @workgroup_size(64)
 fn carry_points(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -94,16 +78,6 @@ pub fn run() -> Report {
         }
     }
     report
-}
-
-#[derive(Resource, ExtractResource, Clone)]
-#[extract_app(RenderApp)]
-struct Probe {
-    points: Handle<ShaderBuffer>,
-    carried: Handle<ShaderBuffer>,
-    shader: Handle<Shader>,
-    tables: SwayBuffers,
-    vertices: u32,
 }
 
 /// In tree heights.
@@ -155,7 +129,7 @@ fn compare_touched(
     app: &mut App,
     tree: Entity,
     (model, vertices): (&TreeModel, &[BoundPoint]),
-    read: &support::ReadBack,
+    read: &ReadBack,
 ) -> Result<(f64, f64), String> {
     let at = TREE_TRANSFORM.translation;
     let world = app.world_mut();
@@ -186,11 +160,7 @@ fn compare_touched(
 
 fn headless_app() -> App {
     let mut app = support::headless_app(Duration::ZERO, None);
-    app.insert_resource(Wind { speed: STORM_M_S, seed: 3, ..default() })
-        .add_plugins(ExtractResourcePlugin::<Probe>::default());
-    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-        render_app.add_systems(RenderGraph, carry_points.before(camera_driver));
-    }
+    app.insert_resource(Wind { speed: STORM_M_S, seed: 3, ..default() }).add_plugins(probe::plugin);
     app.finish();
     app.cleanup();
     app
@@ -211,47 +181,25 @@ fn bound_points(model: &TreeModel) -> Vec<BoundPoint> {
     wood.chain(leaves.map(|(at, sway)| point(Vec3::from_slice(at), sway))).collect()
 }
 
-fn install_probe(app: &mut App, vertices: &[BoundPoint]) -> support::ReadBack {
-    let rows: Vec<Vec4> =
-        vertices.iter().flat_map(|v| [v.at.extend(v.beam as f32), Vec4::new(v.s, 0.0, 0.0, 0.0)]).collect();
+fn install_probe(app: &mut App, vertices: &[BoundPoint]) -> ReadBack {
+    let rows = vertices.iter().flat_map(|v| [v.at.extend(v.beam as f32), Vec4::new(v.s, 0.0, 0.0, 0.0)]).collect();
     let world = app.world_mut();
-    let shader = world.resource_mut::<Assets<Shader>>().add(Shader::from_wesl(CARRY_SHADER, "carry_points.wesl"));
-    let mut buffers = world.resource_mut::<Assets<ShaderBuffer>>();
-    let points = buffers.add(ShaderBuffer::from(rows));
-    let carried = buffers.add(ShaderBuffer::from(vec![Vec4::ZERO; vertices.len()]));
-    let tables = world.resource::<SwayBuffers>().clone();
-    world.insert_resource(Probe { points, carried: carried.clone(), shader, tables, vertices: vertices.len() as u32 });
-    support::read_every_frame(world, carried)
+    let SwayBuffers { poses, beams, trees, frame, .. } = world.resource::<SwayBuffers>().clone();
+    let tables = (2..).zip([poses, beams, trees, frame].map(Bound::Table));
+    let shader = ProbeSource { entry_point: "carry_points", wesl: CARRY_SHADER };
+    probe::install(world, shader, rows, [vertices.len(), 1], tables)
 }
 
 /// Renders frames until what is read back is surely of the current time.
-fn read_back(app: &mut App, read: &support::ReadBack, count: usize) -> Result<Vec<Vec3>, String> {
+fn read_back(app: &mut App, read: &ReadBack, count: usize) -> Result<Vec<Vec3>, String> {
     const SETTLE_FRAMES: usize = 6;
     for _ in 0..SETTLE_FRAMES {
         support::render_frame(app)?;
     }
-    let bytes = read.lock().ok().and_then(|mut slot| slot.take()).ok_or("nothing was read back")?;
-    let floats = support::floats(&bytes);
-    let points: Vec<Vec3> = floats.chunks_exact(4).map(Vec3::from_slice).collect();
-    if points.len() == count && floats.iter().skip(3).step_by(4).all(|w| *w == 1.0) {
-        Ok(points)
+    let rows = probe::rows(read).ok_or("nothing was read back")?;
+    if rows.len() == count && rows.iter().all(|row| row.w == 1.0) {
+        Ok(rows.into_iter().map(Vec4::truncate).collect())
     } else {
         Err("the GPU did not write every vertex".into())
     }
-}
-
-fn carry_points(mut pass: ProbePass, probe: Option<Res<Probe>>, buffers: Res<RenderAssets<GpuShaderBuffer>>) {
-    let Some(probe) = probe else { return };
-    let SwayBuffers { poses, beams, trees, frame, .. } = &probe.tables;
-    let bound = [poses, beams, trees, frame, &probe.points, &probe.carried].map(|handle| buffers.get(handle));
-    let [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)] = bound else { return };
-    let [a, b, c, d, e, f] = [a, b, c, d, e, f].map(|buffer| buffer.buffer.as_entire_buffer_binding());
-    let table = || storage_buffer_read_only_sized(false, None);
-    let entries = (table(), table(), table(), table(), table(), storage_buffer_sized(false, None));
-    pass.run(
-        ProbeShader { entry_point: "carry_points", shader: &probe.shader },
-        &BindGroupLayoutEntries::sequential(ShaderStages::COMPUTE, entries),
-        &BindGroupEntries::sequential((a, b, c, d, e, f)),
-        [probe.vertices.div_ceil(64), 1],
-    );
 }

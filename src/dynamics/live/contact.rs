@@ -27,6 +27,17 @@ pub struct Capsule {
     pub radius_m: f32,
 }
 
+/// A capsule that went straight on for a while.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SweptCapsule {
+    /// Ends of its line where that began, and where it ended, m.
+    pub ends: [[Vec3; 2]; 2],
+    /// Radius of the ball, m.
+    pub radius_m: f32,
+    /// How long ago it was at the beginning and at the end, s.
+    pub ages_s: [f32; 2],
+}
+
 /// A force of 1 N at a place, on one of the beams that it bends.
 #[derive(Clone, Copy)]
 struct Share {
@@ -141,10 +152,13 @@ impl Contacts<'_> {
     /// Moves branches out of a body that presses with a force of `most_n` at most.
     pub fn push(&self, tree: &mut LiveTree, body: &Capsule, most_n: f32) {
         // What this body has bent so far: a beam is moved by all that its own branches need.
-        let mut bent = vec![Vec3A::ZERO; self.beams.len()];
+        let mut bent = std::mem::take(&mut tree.bent);
+        bent.clear();
+        bent.resize(self.beams.len(), Vec3A::ZERO);
         for beam in 0..self.beams.len() {
             self.push_beam(tree, beam, body, most_n, &mut bent);
         }
+        tree.bent = bent;
     }
 
     fn push_beam(&self, tree: &mut LiveTree, beam: usize, body: &Capsule, most_n: f32, bent: &mut [Vec3A]) {

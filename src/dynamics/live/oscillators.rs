@@ -18,7 +18,7 @@ const LONGEST_STEP_S: f64 = 1000.0;
 const MOST_FREE_RAD: f32 = 20.0;
 
 /// A step of all oscillators, of one length of time.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct LiveSteps {
     steps: Vec<[ExactStep; DAMPINGS]>,
     omegas: Vec<f32>,
@@ -28,17 +28,25 @@ impl LiveSteps {
     /// The steps over `time_step_s` of the oscillators of a grid; none where no time passes. A step may be of any length.
     #[must_use]
     pub fn new(grid: &OscillatorGrid, time_step_s: f64) -> Option<Self> {
+        let mut steps = Self::default();
+        steps.renew(grid, time_step_s).then_some(steps)
+    }
+
+    /// Makes them those of another time step, in the memory that they have. Returns whether time passes.
+    pub fn renew(&mut self, grid: &OscillatorGrid, time_step_s: f64) -> bool {
+        self.steps.clear();
+        self.omegas.clear();
         if time_step_s.is_nan() || time_step_s < LEAST_STEP_S {
-            return None;
+            return false;
         }
         let time_step_s = time_step_s.min(LONGEST_STEP_S);
-        let omegas: Vec<f32> = omegas(grid).collect();
         let step = |omega: f32, damping: usize| {
             let ratio = f64::from(grid.damping_ratios[damping]).min(MOST_DAMPING_RATIO);
-            ExactStep::new(f64::from(omega), ratio, time_step_s)
+            ExactStep::new(f64::from(omega), ratio, time_step_s).ok()
         };
-        let steps = omegas.iter().map(|omega| Some([step(*omega, 0).ok()?, step(*omega, 1).ok()?])).collect();
-        Some(Self { steps: Option::from_iter::<Vec<_>>(steps)?, omegas })
+        self.omegas.extend(omegas(grid));
+        self.steps.extend(self.omegas.iter().map_while(|omega| Some([step(*omega, 0)?, step(*omega, 1)?])));
+        self.steps.len() == self.omegas.len()
     }
 }
 
@@ -69,6 +77,8 @@ impl BeamLoad {
 #[derive(Clone, Debug, Default)]
 pub struct LiveTree {
     beams: Vec<LiveState>,
+    /// What one body has bent so far, kept for the next.
+    pub(super) bent: Vec<Vec3A>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

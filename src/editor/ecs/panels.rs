@@ -58,6 +58,7 @@ pub(super) fn draw_panels(mut contexts: EguiContexts, mut workbench: ResMut<Work
                 histogram: workbench.land.histogram.as_ref(),
                 stems: workbench.land.stems,
                 is_growing: workbench.land.is_growing,
+                planted_share: workbench.land.planted_share,
             },
             ground: &mut workbench.ground,
             ground_facts: GroundFacts {

@@ -22,6 +22,9 @@ pub(super) struct AppliedPlan {
     pub handle: Handle<ForestPlan>,
     plan: Option<ForestPlan>,
     since: Option<Instant>,
+    /// Whether the forest is still to be planted as the plan says, and the newest of its generations before.
+    is_planting: bool,
+    generation_before: Option<u64>,
     counting: Option<Work<Result<QuadratHistogram, String>>>,
     counted: Option<Counted>,
 }
@@ -57,8 +60,12 @@ pub(super) fn apply_plan(
     if !is_planted && !has_waited {
         return;
     }
+    let generation = newest_generation(&forests, &applied.handle);
     match assets.insert(&applied.handle, wanted.clone()) {
-        Ok(()) => (applied.plan, applied.since) = (Some(wanted.clone()), Some(Instant::now())),
+        Ok(()) => {
+            (applied.plan, applied.since) = (Some(wanted.clone()), Some(Instant::now()));
+            (applied.is_planting, applied.generation_before) = (true, generation);
+        }
         Err(error) => warn!("workbench: the plan cannot be shown: {error}"),
     }
 }
@@ -116,7 +123,7 @@ pub(super) fn count_quadrats(mut workbench: ResMut<Workbench>, mut applied: ResM
 /// Notes what stands, and whether more is to come.
 pub(super) fn note_woods(
     mut workbench: ResMut<Workbench>,
-    applied: Res<AppliedPlan>,
+    mut applied: ResMut<AppliedPlan>,
     forests: Query<(&Forest, Option<&ForestCells>)>,
 ) {
     let workbench = workbench.bypass_change_detection();
@@ -125,6 +132,19 @@ pub(super) fn note_woods(
     let is_planted = |cells: &ForestCells| cells.is_planted() && cells.is_complete() && cells.is_up_to_date();
     workbench.land.stems = of_plan().filter_map(|(_, cells)| Some(cells?.store().plants())).sum();
     workbench.land.is_growing = !is_shown || !of_plan().all(|(_, cells)| cells.is_some_and(is_planted));
+    // What has to be planted because somebody goes about is no work of the plan's.
+    let has_begun = applied.is_planting && newest_generation(&forests, &applied.handle) > applied.generation_before;
+    let unplanted = of_plan().filter_map(|(_, cells)| cells.filter(|cells| !cells.is_planted()));
+    workbench.land.planted_share = unplanted.map(ForestCells::planted_share).reduce(f32::min).filter(|_| has_begun);
+    if has_begun && workbench.land.planted_share.is_none() {
+        applied.is_planting = false;
+    }
+}
+
+/// The newest generation of the forests of a plan; none where none has begun.
+fn newest_generation(forests: &Query<(&Forest, Option<&ForestCells>)>, plan: &Handle<ForestPlan>) -> Option<u64> {
+    let of_plan = forests.iter().filter(|(forest, _)| forest.plan == *plan);
+    of_plan.filter_map(|(_, cells)| Some(cells?.generation())).max()
 }
 
 #[cfg(test)]

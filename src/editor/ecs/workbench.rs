@@ -88,6 +88,8 @@ pub(super) struct LandFacts {
     pub histogram: Option<Result<QuadratHistogram, String>>,
     pub stems: usize,
     pub is_growing: bool,
+    /// The share of the forest that is planted as a changed plan says; none where all is.
+    pub planted_share: Option<f32>,
     pub variogram: Option<GroundVariogram>,
     pub is_building: bool,
 }

@@ -1,18 +1,14 @@
-//! The bars around the picture: which panel, which view, which age and season; and what was done last.
+//! The bars around the picture: which panel, which view, which age and season.
 
 use bevy_egui::egui::{
     Align, DragValue, Id, Label, Layout, RichText, Slider, SliderClamping, ThemePreference, Ui, WidgetInfo, WidgetType,
     vec2,
 };
 
-use super::{
-    dialogs::Dialog,
-    theme::{ROW, palette},
-};
+use super::{dialogs::Dialog, theme::ROW};
 use crate::{
     editor::{
         diagram::View,
-        file_session::Message,
         land_pose::LandPose,
         live_settings::LiveSettings,
         stage::{Arrangement, Stage},
@@ -52,18 +48,6 @@ impl Panel {
     pub fn is_of_land(self) -> bool {
         matches!(self, Self::Woods | Self::Ground)
     }
-}
-
-/// What is told of the tree that is shown.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct TreeFacts {
-    pub height_m: f32,
-    pub beams: usize,
-    pub triangles: usize,
-    /// From the last change to the tree that shows it, ms.
-    pub grown_in_ms: Option<f64>,
-    /// Whether a tree is being grown.
-    pub is_growing: bool,
 }
 
 /// The bar on top.
@@ -221,52 +205,6 @@ fn month(year: f32) -> &'static str {
     ];
     let day = (year.rem_euclid(1.0) * 365.0 - 11.0).rem_euclid(365.0);
     MONTHS[((day / 365.0 * 12.0) as usize).min(11)]
-}
-
-/// Work in the background that is not wanted any more.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Cancelled {
-    /// The tree that is being grown.
-    pub growing: bool,
-    pub exporting: bool,
-}
-
-/// The bar at the bottom: what was done last, what is shown of a tree, and what is being done.
-pub fn status_bar(ui: &mut Ui, message: Option<&Message>, facts: Option<&TreeFacts>, is_exporting: bool) -> Cancelled {
-    let palette = palette(ui.visuals());
-    let mut cancelled = Cancelled::default();
-    ui.horizontal(|ui| {
-        ui.set_height(20.0);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            cancelled.growing = facts.is_some_and(|facts| tree_facts(ui, facts));
-            cancelled.exporting = is_exporting && under_way(ui, "Exporting", "Nothing is written then");
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                let (text, colour) = match message {
-                    Some(Message::Done(text)) => (text.as_str(), palette.good),
-                    Some(Message::Failed(text)) => (text.as_str(), palette.bad),
-                    None => ("", palette.good),
-                };
-                let text = Label::new(RichText::new(text).color(colour)).truncate();
-                ui.add(text);
-            });
-        });
-    });
-    cancelled
-}
-
-fn tree_facts(ui: &mut Ui, facts: &TreeFacts) -> bool {
-    let time = facts.grown_in_ms.map_or_else(String::new, |ms| format!("  ·  grown in {ms:.0} ms"));
-    let counts = format!("{:.1} m  ·  {} beams  ·  {} triangles{time}", facts.height_m, facts.beams, facts.triangles);
-    ui.label(RichText::new(counts).weak());
-    facts.is_growing && under_way(ui, "Growing", "Go back to the tree that is shown")
-}
-
-/// Work that goes on. Returns whether it is to be cancelled.
-fn under_way(ui: &mut Ui, what: &str, cancel: &str) -> bool {
-    let is_cancelled = ui.small_button("Cancel").on_hover_text(cancel).clicked();
-    ui.label(what);
-    ui.spinner();
-    is_cancelled
 }
 
 #[cfg(test)]

@@ -18,22 +18,24 @@ mod shortcuts;
 mod species_panel;
 mod spline_view;
 mod starling;
+mod status_bar;
 pub mod theme;
 mod value_rows;
 mod wind_panel;
 mod woods_panel;
 mod woods_plots;
 
-pub use bars::{Cancelled, Panel, TreeFacts};
+pub use bars::Panel;
 pub use ground_plots::GroundFacts;
 pub use levels_panel::{LevelSettings, LevelTables};
+pub use status_bar::{Cancelled, TreeFacts};
 pub use wind_panel::{WindFacts, wind_table};
 pub use woods_plots::WoodsFacts;
 
 use std::path::PathBuf;
 
 use self::{
-    bars::{land_bar, stage_bar, status_bar, top_bar},
+    bars::{land_bar, stage_bar, top_bar},
     dialogs::{Answer, Dialog},
     envelope_view::envelope_in_picture,
     ground_panel::ground_panel,
@@ -44,6 +46,7 @@ use self::{
     shortcuts::{Command, pressed},
     species_panel::species_panel,
     spline_view::spline_in_picture,
+    status_bar::{Planting, status_bar},
     theme::{MARGIN, PANEL_WIDTH},
     wind_panel::{wind_panel, wind_plots},
     woods_panel::woods_panel,
@@ -167,7 +170,13 @@ pub fn draw(ui: &mut Ui, state: &mut UiState, mut subjects: Subjects) -> Drawn {
     let status = EguiPanel::bottom("windwood status").frame(bar(ui));
     let facts = (!state.panel.is_of_land()).then_some(subjects.tree);
     let message = subjects.files(state.panel).message().cloned();
-    let cancelled = status.show(ui, |ui| status_bar(ui, message.as_ref(), facts, subjects.is_exporting)).inner;
+    let planted_share = subjects.woods_facts.planted_share.filter(|_| state.panel == Panel::Woods);
+    let planting = planted_share.map(|share| Planting { share, step: subjects.woods.session.undo_step() });
+    let cancelled =
+        status.show(ui, |ui| status_bar(ui, message.as_ref(), facts, subjects.is_exporting, planting)).inner;
+    if cancelled.planting {
+        subjects.woods.session.undo();
+    }
     let fields = EguiPanel::left("windwood fields").frame(frame(ui)).resizable(false).exact_size(PANEL_WIDTH);
     fields.show(ui, |ui| left_panel(ui, state, &mut subjects));
     if state.panel != Panel::Species {

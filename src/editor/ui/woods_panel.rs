@@ -1,14 +1,14 @@
 //! The panel of a wood: its plan, the tools, and the fields of what is chosen.
 
 use bevy::math::Vec2;
-use bevy_egui::egui::{Button, CollapsingHeader, ComboBox, DragValue, ScrollArea, Ui, vec2};
+use bevy_egui::egui::{Align, Button, CollapsingHeader, ComboBox, DragValue, Layout, ScrollArea, TextEdit, Ui, vec2};
 
 use super::{
     dialogs::Dialog,
     file_bar::{file_buttons, undo_buttons, warnings},
     rows::Rows,
     session_rows::session_rows,
-    theme::ROW,
+    theme::{ROW, palette},
     value_rows::{labelled, slider},
 };
 use crate::{
@@ -101,7 +101,35 @@ fn chosen(ui: &mut Ui, woods: &mut Woods, middle: Vec2) {
             woods.convert(false);
         }
     });
+    mask_file(ui, woods);
     corner(ui, woods);
+}
+
+/// The picture that the chosen area's mask is saved to and loaded from, and why it was not.
+fn mask_file(ui: &mut Ui, woods: &mut Woods) {
+    let Some(Element::Area(_)) = woods.chosen() else { return };
+    ui.horizontal(|ui| {
+        ui.set_height(ROW);
+        let named = ui.label("Mask file").on_hover_text("A PNG, a pixel a point: white is full density, north is up");
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let has_path = !woods.mask_path.trim().is_empty();
+            let load = ui.add_enabled(has_path, Button::new("Load mask"));
+            if load.on_hover_text("The area becomes the mask of this picture, over the bounds that it has").clicked() {
+                woods.load_mask();
+            }
+            if woods.can_paint() {
+                let save = ui.add_enabled(has_path, Button::new("Save mask"));
+                if save.on_hover_text("A picture of this name is replaced").clicked() {
+                    woods.save_mask();
+                }
+            }
+            let edit = TextEdit::singleline(&mut woods.mask_path).desired_width(f32::INFINITY);
+            ui.add(edit.hint_text("Path of a PNG")).labelled_by(named.id);
+        });
+    });
+    if let Some(error) = &woods.mask_error {
+        ui.colored_label(palette(ui.visuals()).bad, error);
+    }
 }
 
 /// The corner that was held last.

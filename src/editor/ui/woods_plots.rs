@@ -15,6 +15,8 @@ pub struct WoodsFacts<'a> {
     pub stems: usize,
     /// Whether the wood is still growing to what the plan says.
     pub is_growing: bool,
+    /// The share of the forest that is planted as a changed plan says; none where all is.
+    pub planted_share: Option<f32>,
 }
 
 /// Draws what is known.

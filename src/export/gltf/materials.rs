@@ -154,7 +154,7 @@ fn extensions(glb: &mut GlbBuilder, reflectance: f32, translucency: f32) -> Mate
     if translucency > 0.0 {
         add("KHR_materials_diffuse_transmission", json!({ "diffuseTransmissionFactor": translucency }));
     }
-    MaterialExtensions { others }
+    MaterialExtensions { others, ..MaterialExtensions::default() }
 }
 
 fn info(index: Index<Texture>) -> Info {

@@ -123,7 +123,7 @@ fn push_instanced(glb: &mut GlbBuilder, node: Node, instances: &[&StandInstance]
         [(EXTENSION.to_owned(), json!({ "attributes": attributes }))].into_iter().collect();
     glb.use_extension(EXTENSION);
     glb.root.extensions_required = vec![EXTENSION.to_owned()];
-    glb.root.push(Node { extensions: Some(NodeExtensions { others }), ..node })
+    glb.root.push(Node { extensions: Some(NodeExtensions { others, ..NodeExtensions::default() }), ..node })
 }
 
 impl StandInstance {

@@ -79,5 +79,5 @@ fn add_lower_levels(glb: &mut GlbBuilder, nodes: &[Index<Node>]) {
     let ids: Vec<usize> = nodes[1..].iter().map(Index::value).collect();
     let others: Map<String, Value> = [("MSFT_lod".to_owned(), json!({ "ids": ids }))].into_iter().collect();
     glb.use_extension("MSFT_lod");
-    glb.root.nodes[nodes[0].value()].extensions = Some(NodeExtensions { others });
+    glb.root.nodes[nodes[0].value()].extensions = Some(NodeExtensions { others, ..NodeExtensions::default() });
 }

@@ -36,12 +36,11 @@ impl Renewal {
         Self { generation, task: spawn_work(move || tiles.into_iter().map(renewed).collect()) }
     }
 
-    /// What was worked out, and for which generation, once it is there.
-    pub fn finished(&mut self) -> Option<(u64, Vec<(IVec2, BlockCanopies)>)> {
-        let renewed = block_on(poll_once(&mut self.task))?.unwrap_or_else(|panic| {
+    /// For which generation something was worked out, once it is there, and what: nothing where a worker has panicked.
+    pub fn finished(&mut self) -> Option<(u64, Option<Vec<(IVec2, BlockCanopies)>>)> {
+        let renewed = block_on(poll_once(&mut self.task))?.inspect_err(|panic| {
             error_once!("forest: {panic}; its impostors keep the stands that they have");
-            Vec::new()
         });
-        Some((self.generation, renewed))
+        Some((self.generation, renewed.ok()))
     }
 }

@@ -243,6 +243,11 @@ impl ForestImpostors {
         if let Some(renewal) = &mut self.renewal {
             let Some((generation, renewed)) = renewal.finished() else { return };
             self.renewal = None;
+            let Some(renewed) = renewed else {
+                // The next time it would panic again.
+                self.tiles.values_mut().for_each(|tile| tile.stand_generation = generation);
+                return;
+            };
             for (place, canopies) in renewed {
                 let Some(tile) = self.tiles.get_mut(&place).filter(|tile| tile.stand_generation < generation) else {
                     continue;
@@ -250,7 +255,6 @@ impl ForestImpostors {
                 masks.set_canopies(&tile.mask, &canopies);
                 tile.stand_generation = generation;
             }
-            self.stand_generation = generation;
         }
         let Some(stands) = forest.stands().filter(|_| self.stand_generation != forest.stand_generation()) else {
             return;

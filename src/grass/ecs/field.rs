@@ -90,31 +90,25 @@ impl GrassFieldPatches {
     }
 }
 
-/// Ground seen from another origin.
-struct MovedGround {
-    ground: Arc<dyn Ground>,
+/// The ground of a field, or the woods over it, seen from the origin of one of its patches.
+struct Moved<T: ?Sized> {
+    whole: Arc<T>,
     origin: DVec2,
 }
 
-impl Ground for MovedGround {
+impl Ground for Moved<dyn Ground> {
     fn height_m(&self, place: DVec2) -> f64 {
-        self.ground.height_m(self.origin + place)
+        self.whole.height_m(self.origin + place)
     }
 
     fn gradient(&self, place: DVec2) -> DVec2 {
-        self.ground.gradient(self.origin + place)
+        self.whole.gradient(self.origin + place)
     }
 }
 
-/// Woods over a field as one of its patches has them.
-struct MovedCover {
-    cover: Arc<dyn Cover>,
-    origin: DVec2,
-}
-
-impl Cover for MovedCover {
+impl Cover for Moved<dyn Cover> {
     fn share(&self, place: DVec2) -> f32 {
-        self.cover.share(self.origin + place)
+        self.whole.share(self.origin + place)
     }
 }
 
@@ -171,12 +165,12 @@ pub(crate) fn move_grass_fields(
         for patch in patches.take_wanted(&field) {
             let middle_m = patch.middle_m(field.side_m());
             let grass = field.patch_at(patch);
-            let moved = MovedGround { ground: ground.clone(), origin: middle_m.as_dvec2() };
+            let origin = middle_m.as_dvec2();
+            let moved = Moved { whole: ground.clone(), origin };
             let at = Transform::from_xyz(middle_m.x, 0.0, middle_m.y);
             let mut spawned = commands.spawn((ChildOf(entity), grass, GrassGround(Arc::new(moved)), at));
             if let Some(shade) = &shade {
-                let cover = MovedCover { cover: shade.0.clone(), origin: middle_m.as_dvec2() };
-                spawned.insert(GrassShade(Arc::new(cover)));
+                spawned.insert(GrassShade(Arc::new(Moved { whole: shade.0.clone(), origin })));
             }
             if let Some(layers) = layers {
                 spawned.insert(layers.clone());

@@ -17,8 +17,7 @@ const MOST_ROWS: u32 = 1 << 21;
 const MOST_TREES: u32 = 1 << 16;
 const ROW_BYTES: u64 = 16;
 
-/// The rows of trees that are awake: two with the wind of sources at the tree's top and lower
-/// down, and one a beam, with its free angle.
+/// The rows of trees that are awake: two with the wind of sources at the tree's top and lower down, and one a beam, with its free angle.
 /// There is a half for this frame and one for the last, which change places each frame.
 #[derive(Resource)]
 pub(crate) struct LiveUploads {

@@ -5,9 +5,9 @@ use bevy::math::DVec2;
 use super::place::{Place, in_f64};
 use crate::setting::{SettingError, require};
 
-const MOST_POINTS_ALONG: usize = 4096;
+pub(super) const MOST_POINTS_ALONG: usize = 4096;
 /// The character of full density.
-const FULL: f32 = 9.0;
+pub(super) const FULL: f32 = 9.0;
 
 /// Checks the rows of a mask.
 pub(super) fn validate(rows: &[String]) -> Result<(), SettingError> {

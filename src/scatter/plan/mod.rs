@@ -9,6 +9,8 @@
 pub(super) mod forest;
 pub(super) mod keep_out;
 mod mask;
+#[cfg(feature = "editor")]
+pub(crate) mod mask_image;
 mod place;
 mod polygon;
 pub(super) mod shape;

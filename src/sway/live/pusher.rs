@@ -1,8 +1,8 @@
 //! Bodies that push branches and grass aside.
 
-use super::trail::{TrailPiece, Trails};
+use super::trail::Trails;
 use crate::{
-    dynamics::Capsule,
+    dynamics::{Capsule, SweptCapsule},
     setting::{SettingError, require},
     wind::WindClock,
 };
@@ -81,8 +81,8 @@ impl Pusher {
 pub struct Pushers {
     now: Vec<PushingBody>,
     before: Vec<PushingBody>,
-    trail: Vec<TrailPiece>,
-    trail_before: Vec<TrailPiece>,
+    trail: Vec<SweptCapsule>,
+    trail_before: Vec<SweptCapsule>,
 }
 
 /// A body that pushes.
@@ -106,13 +106,13 @@ impl Pushers {
 
     /// Where they were in the last moments, up to where they are.
     #[cfg(feature = "render")]
-    pub(crate) fn trail(&self) -> &[TrailPiece] {
+    pub(crate) fn trail(&self) -> &[SweptCapsule] {
         &self.trail
     }
 
     /// The same one frame ago.
     #[cfg(feature = "render")]
-    pub(crate) fn trail_before(&self) -> &[TrailPiece] {
+    pub(crate) fn trail_before(&self) -> &[SweptCapsule] {
         &self.trail_before
     }
 }

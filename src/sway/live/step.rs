@@ -36,6 +36,7 @@ pub(in crate::sway) fn step_live_trees(
     season: Res<Season>,
     (sources, pushers): (Res<WindSources>, Res<Pushers>),
     models: Res<Assets<TreeModel>>,
+    mut steps: Local<LiveSteps>,
     mut trees: Query<(
         (&Tree, &Grown, Option<&InCanopy>),
         (&Transform, &GlobalTransform, Has<ChildOf>),
@@ -46,7 +47,7 @@ pub(in crate::sway) fn step_live_trees(
     let Some(newest) = sway.now().last() else { return };
     let grid = &newest.response.table.grid;
     let frame_s = clock.time_s - clock.previous_s;
-    let steps = LiveSteps::new(grid, frame_s);
+    let steps = steps.renew(grid, frame_s).then_some(&*steps);
     let lookups = Lookups::new(grid.classes, frame_s);
     trees.par_iter_mut().for_each(|((of, grown, canopy), (transform, global, is_child), pose, mut live)| {
         let Some(model) = models.get(&grown.model) else { return };
@@ -58,7 +59,7 @@ pub(in crate::sway) fn step_live_trees(
         let local_from_world = world_from_local(&stands).transpose();
         live.feel_blows(&model.beams, &stands, local_from_world, scale);
         let place = TreeInFlows::new(&sources, model, stands, local_from_world);
-        if let Some(steps) = &steps {
+        if let Some(steps) = steps {
             step(&mut live, &sway, clock.time_s, (steps, lookups), &place);
         }
         let poses = pose.map_or(&[][..], TreePose::beams);
@@ -105,6 +106,8 @@ struct TreeInFlows<'a> {
     /// A ball around it in any wind.
     middle: Vec3,
     radius_m: f32,
+    /// Whether something reaches it that comes and goes within the frame.
+    has_pulse: bool,
 }
 
 impl<'a> TreeInFlows<'a> {
@@ -112,7 +115,10 @@ impl<'a> TreeInFlows<'a> {
         let scale = uniform_scale(&stands);
         let middle = stands.transform_point(0.5 * (model.bounds.min + model.bounds.max));
         let radius_m = 0.5 * scale * (model.bounds.max - model.bounds.min).length();
-        Self { sources: sources.now(), stands, local_from_world, scale, height_m: model.height_m(), middle, radius_m }
+        let (sources, height_m) = (sources.now(), model.height_m());
+        let tree = Self { sources, stands, local_from_world, scale, height_m, middle, radius_m, has_pulse: false };
+        let has_pulse = tree.flows().any(SourceFlow::is_pulse);
+        Self { has_pulse, ..tree }
     }
 
     /// Those that reach it.
@@ -141,8 +147,7 @@ impl<'a> TreeInFlows<'a> {
 
     /// The load of a beam in a wind; the steady one where it is due.
     fn load(&self, beam: &LiveBeam, wind: &WindAtTree, is_due: bool) -> BeamLoad {
-        let has_pulse = self.flows().any(SourceFlow::is_pulse);
-        if !(is_due || has_pulse) {
+        if !(is_due || self.has_pulse) {
             return BeamLoad { steady: None, pulse: Vec3A::ZERO };
         }
         let wind = wind.at(beam.load_at.y / self.height_m.max(f32::MIN_POSITIVE));

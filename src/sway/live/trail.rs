@@ -1,6 +1,6 @@
 //! Where pushers have been in the last moments: the grass there is still swinging back.
 
-use crate::dynamics::Capsule;
+use crate::dynamics::{Capsule, SweptCapsule};
 use bevy::prelude::*;
 use std::collections::{BTreeMap, VecDeque};
 
@@ -12,17 +12,6 @@ const STEP_S: f32 = 0.25;
 const STANDS_M: f32 = 0.02;
 /// A body that is faster than this has not gone there, m/s.
 const FASTEST_M_S: f32 = 100.0;
-
-/// A stretch of the way of a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct TrailPiece {
-    /// The ends of the body's axis where the stretch begins and where it ends, in the world, m.
-    pub ends: [[Vec3; 2]; 2],
-    /// The body's radius, m.
-    pub radius_m: f32,
-    /// How long ago it was at its beginning and its end, s.
-    pub ages_s: [f32; 2],
-}
 
 /// A place where a body was.
 #[derive(Clone, Copy, Debug)]
@@ -87,10 +76,10 @@ impl Trail {
         }
     }
 
-    fn pieces(&self) -> impl Iterator<Item = TrailPiece> {
+    fn pieces(&self) -> impl Iterator<Item = SweptCapsule> {
         let now = self.now.map(|ends| Placement { ends, age_s: 0.0 });
         let ends = self.placements.iter().copied().skip(1).chain(now);
-        self.placements.iter().zip(ends).filter(|(from, to)| !from.is_at(to.ends)).map(|(from, to)| TrailPiece {
+        self.placements.iter().zip(ends).filter(|(from, to)| !from.is_at(to.ends)).map(|(from, to)| SweptCapsule {
             ends: [from.ends, to.ends],
             radius_m: self.radius_m,
             ages_s: [from.age_s, to.age_s],
@@ -108,7 +97,7 @@ impl Trails {
         &mut self,
         bodies: impl Iterator<Item = (Entity, Capsule)>,
         frame_s: f32,
-        pieces: &mut Vec<TrailPiece>,
+        pieces: &mut Vec<SweptCapsule>,
     ) {
         self.0.values_mut().for_each(|trail| trail.age(frame_s));
         for (entity, body) in bodies {
@@ -127,7 +116,7 @@ mod tests {
     const FRAME_S: f32 = 0.02;
 
     /// The pieces after each frame of a body that is at those places.
-    fn follow(places: impl Iterator<Item = Option<Vec3>>) -> Vec<Vec<TrailPiece>> {
+    fn follow(places: impl Iterator<Item = Option<Vec3>>) -> Vec<Vec<SweptCapsule>> {
         let (mut trails, entity) = (Trails::default(), Entity::from_raw_u32(1).expect("it is a number"));
         let frame = |place: Option<Vec3>| {
             let capsule = place.map(|place| Capsule { ends: [place; 2], radius_m: 0.5 });

@@ -56,7 +56,9 @@ fn a_changed_plan_grows_and_its_quadrats_are_counted() {
     wait(&mut app, is_grown);
     wait(&mut app, |workbench| matches!(workbench.land.histogram, Some(Ok(_))));
     let before = app.world().resource::<Workbench>().land.stems;
+    assert_eq!(app.world().resource::<Workbench>().land.planted_share, None);
     change(&mut app, |plan| plan.areas[0].density_per_ha = 90.0);
+    wait(&mut app, |workbench| workbench.land.planted_share.is_some_and(|share| (0.0..1.0).contains(&share)));
     wait(&mut app, |workbench| is_grown(workbench) && workbench.land.stems < before * 3 / 4);
     wait(
         &mut app,

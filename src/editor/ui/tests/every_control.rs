@@ -27,7 +27,7 @@ impl Desk {
     /// All that a control may change, as text.
     fn all(&self) -> String {
         let view = (&self.stage, self.season, self.is_frozen, self.pose, &self.state.filter, &self.state.randomiser);
-        let woods = (self.woods.tool, self.woods.brush, self.woods.chosen, self.woods.corner);
+        let woods = (self.woods.tool, self.woods.brush, self.woods.chosen, self.woods.corner, &self.woods.mask_path);
         let ground = (self.ground.kind, &self.ground.request, self.ground.is_shown, self.ground.chosen_fit);
         format!("{} {view:?} {woods:?} {ground:?}", self.settings())
     }

@@ -110,6 +110,57 @@ fn the_brush_paints_a_mask_and_keeps_paths_free() {
     assert!(matches!(desk.woods.plan().keep_out.last(), Some(KeepOut::Disc { .. })));
 }
 
+#[test]
+fn a_mask_is_saved_as_a_picture_and_loaded_in_one_step() {
+    let mut desk = desk();
+    small_wood(&mut desk);
+    desk.press("To mask");
+    let path = desk.woods.session.path().with_file_name("density.png");
+    desk.woods.mask_path = path.display().to_string();
+    desk.frame(Vec::new());
+    desk.press("Save mask");
+    assert!(path.exists(), "{:?}", desk.woods.mask_error);
+    let saved = desk.woods.plan().clone();
+    let mut other = saved.clone();
+    let Shape::Mask { rows, .. } = &mut other.areas[0].shape else { panic!("a mask") };
+    rows.iter_mut().for_each(|row| *row = "5".repeat(row.len()));
+    desk.woods.session.change(other.clone(), "test");
+    desk.woods.session.end_gesture();
+    desk.press("Load mask");
+    assert_eq!(*desk.woods.plan(), saved);
+    desk.key(Modifiers::COMMAND, Key::Z);
+    assert_eq!(*desk.woods.plan(), other, "loading is one step");
+    fs::write(&path, "no picture").unwrap();
+    desk.press("Load mask");
+    desk.frame(Vec::new());
+    assert_eq!(*desk.woods.plan(), other, "a bad file leaves the mask as it is");
+    let texts = desk.texts();
+    assert!(texts.iter().any(|text| text.contains("density.png: the picture cannot be read")), "{texts:?}");
+}
+
+/// The forest grows to a changed plan: the bar tells how far it is, and *Cancel* takes the change back.
+#[test]
+fn planting_has_a_bar_and_is_cancelled_by_taking_the_change_back() {
+    let mut desk = desk();
+    let original = desk.woods.plan().clone();
+    let has =
+        |desk: &Desk, role: Role, name: &str| desk.nodes().iter().any(|(own, text, _)| *own == role && text == name);
+    let has_bar = |desk: &Desk| has(desk, Role::ProgressIndicator, "Planting");
+    assert!(!has_bar(&desk));
+    desk.planted_share = Some(0.4);
+    (0..2).for_each(|_| drop(desk.frame(Vec::new())));
+    assert!(has_bar(&desk) && !has(&desk, Role::Button, "Cancel"), "there is nothing to take back yet");
+    small_wood(&mut desk);
+    (0..2).for_each(|_| drop(desk.frame(Vec::new())));
+    assert!(desk.clipped_texts().is_empty(), "{:?}", desk.clipped_texts());
+    let at = desk.find(Role::Button, "Cancel").center();
+    assert!(desk.press_and_see(at).cancelled.planting);
+    assert_eq!(*desk.woods.plan(), original);
+    desk.planted_share = None;
+    (0..2).for_each(|_| drop(desk.frame(Vec::new())));
+    assert!(!has_bar(&desk));
+}
+
 /// Every slider in sight is dragged; then all is taken back, and the file is saved byte for byte.
 #[test]
 fn every_slider_changes_the_plan_and_is_undone() {
