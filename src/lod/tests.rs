@@ -2,7 +2,7 @@
 
 use super::{
     CrossedPolygons, DecimatedMeshes, EnvelopeLevel, EnvelopeSettings, ImpostorAtlas, LodBakeSettings, Scene,
-    bake::texels::TexelGrid, crossed_polygons, decimate, settings::ImpostorSettings,
+    bake::texels::TexelGrid, crossed_polygons, decimate, settings::ImpostorSettings, thinned_meshes,
 };
 use crate::{
     texture::TextureData,
@@ -128,4 +128,24 @@ fn every_shipped_species_has_finite_levels() {
             assert!(drawn > 0.0, "{name} at {age} is not seen");
         }
     }
+}
+
+/// How high a tree is, m, and how many of its sprays it keeps in the coarsest level, as the share of their vertices.
+fn kept_leaves(name: &str, age: f32) -> (f32, f32) {
+    let (species, model, _) = grown(name, age);
+    let levels = thinned_meshes(&species, &model, &LodBakeSettings::default());
+    let kept = levels[1].meshes.leaves.positions.len() as f32 / model.leaves.positions.len() as f32;
+    (model.height_m(), kept)
+}
+
+/// Sprays of 0.46 m grow to a sixth of the height at most: fewer would not have the area of all. An oak bears what is asked for.
+#[test]
+fn shrubs_keep_the_sprays_that_enlarged_would_be_too_large() {
+    for age in [0.35, 1.0] {
+        let (height_m, kept) = kept_leaves("hazel", age);
+        let least = (0.46 * 6.0 / height_m).powi(2);
+        assert!((0.25..0.95).contains(&least) && (kept - least).abs() < 0.03, "{height_m} m: {kept}, and {least}");
+    }
+    let (_, oak) = kept_leaves("oak", 1.0);
+    assert!((oak - 0.2).abs() < 0.02, "{oak}");
 }

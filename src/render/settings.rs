@@ -46,7 +46,7 @@ impl Default for LevelOfDetail {
             style: LevelStyle::default(),
             screen_sizes: LodScreenSizes::default(),
             fade: 0.1,
-            shadow_impostors_from_heights: 2.0,
+            shadow_impostors_from_heights: 1.0,
             changes_per_frame: 128,
             bake: LodBakeSettings::default(),
         }
