@@ -1,6 +1,7 @@
 //! How long our systems take.
 
 use bevy::{
+    ecs::message::MessageUpdateSystems,
     ecs::system::{Adapt, IntoAdapterSystem, IntoSystem, RunSystemError, System, SystemIn},
     prelude::*,
 };
@@ -82,7 +83,7 @@ pub(crate) fn timed_as<Marker, S: IntoSystem<(), (), Marker>>(
     system: S,
 ) -> IntoAdapterSystem<Timed, S> {
     if !app.world().contains_resource::<SystemTimes>() {
-        app.init_resource::<SystemTimes>().add_systems(First, forget_times);
+        app.init_resource::<SystemTimes>().add_systems(First, forget_times.after(MessageUpdateSystems));
     }
     let nanoseconds = Arc::new(AtomicU64::new(0));
     let mut times = app.world_mut().resource_mut::<SystemTimes>();

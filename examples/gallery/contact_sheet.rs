@@ -81,12 +81,15 @@ fn rows(options: &Options) -> Vec<Vec<Shot>> {
             let row = |species| subjects.map(|subject| Shot { subject, ..shot(species) }).into();
             species.iter().map(row).collect()
         }
-        Columns::Summer => {
-            // As many rows as make the sheet about as wide as it is high.
-            let across = (species.len() as f32).sqrt().ceil().max(1.0) as usize;
-            species.chunks(across).map(|row| row.iter().map(shot).collect()).collect()
-        }
+        Columns::Summer => species.chunks(across(species.len())).map(|row| row.iter().map(shot).collect()).collect(),
     }
+}
+
+/// Pictures in a row of so many: the sheet is up to twice as wide as it is high, and as full as it can be.
+fn across(pictures: usize) -> usize {
+    let side = (pictures as f32).sqrt();
+    let widths = side.ceil().max(1.0) as usize..=(1.4 * side).ceil().max(1.0) as usize;
+    widths.min_by_key(|across| pictures.next_multiple_of(*across)).unwrap_or(1)
 }
 
 /// Spawns the tree of a picture, waits for it, renders it, and despawns it.

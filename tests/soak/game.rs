@@ -85,6 +85,12 @@ impl Game {
                 game.spawn((Tree::new(species.clone()).with_age(age_years), Transform::from_xyz(0.0, 0.0, -5.0)));
             }
         }
+        // One wind comes before the other has faded: there are never more tables than now.
+        game.app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(FRAME_S)));
+        for speed in [4.0, 8.0, 12.0, 16.0] {
+            game.app.world_mut().resource_mut::<Wind>().speed = speed;
+            (0..10).for_each(|_| game.app.update());
+        }
         game.go_home();
         game.draw();
         game
@@ -181,7 +187,8 @@ impl Game {
         self.app.insert_resource(Season::SUMMER);
         for place in [Transform::from_xyz(-HALF_M, 2.0, -HALF_M), HOME] {
             *self.app.world_mut().get_mut::<Transform>(self.camera).expect("a camera") = place;
-            (0..3).for_each(|_| self.app.update());
+            // Cells that nobody is near to go, a few a frame.
+            (0..60).for_each(|_| self.app.update());
             self.rest();
         }
         // Trees that were touched come to rest, and what lingers goes: meshes that no tree has wanted for 32 rounds of 17 frames.
