@@ -1,8 +1,10 @@
 //! How long our systems take.
 
 use bevy::{
-    ecs::message::MessageUpdateSystems,
-    ecs::system::{Adapt, IntoAdapterSystem, IntoSystem, RunSystemError, System, SystemIn},
+    ecs::{
+        message::MessageUpdateSystems,
+        system::{Adapt, IntoAdapterSystem, IntoSystem, RunSystemError, System, SystemIn},
+    },
     prelude::*,
 };
 use std::{

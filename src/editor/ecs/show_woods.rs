@@ -54,8 +54,7 @@ pub(super) fn apply_plan(
     if applied.plan.as_ref() == Some(wanted) || wanted.validate().is_err() {
         return;
     }
-    let mut of_plan = forests.iter().filter(|(forest, _)| forest.plan == applied.handle);
-    let is_planted = of_plan.all(|(_, cells)| cells.is_some_and(ForestCells::is_planted));
+    let is_planted = of_plan(&forests, &applied.handle).all(|cells| cells.is_some_and(ForestCells::is_planted));
     let has_waited = applied.since.is_none_or(|since| since.elapsed() > LONGEST_WAIT);
     if !is_planted && !has_waited {
         return;
@@ -127,24 +126,31 @@ pub(super) fn note_woods(
     forests: Query<(&Forest, Option<&ForestCells>)>,
 ) {
     let workbench = workbench.bypass_change_detection();
-    let of_plan = || forests.iter().filter(|(forest, _)| forest.plan == applied.handle);
+    let here = || of_plan(&forests, &applied.handle);
     let is_shown = applied.plan.as_ref() == Some(workbench.woods.plan()) || workbench.woods.session.error().is_some();
     let is_planted = |cells: &ForestCells| cells.is_planted() && cells.is_complete() && cells.is_up_to_date();
-    workbench.land.stems = of_plan().filter_map(|(_, cells)| Some(cells?.store().plants())).sum();
-    workbench.land.is_growing = !is_shown || !of_plan().all(|(_, cells)| cells.is_some_and(is_planted));
+    workbench.land.stems = here().flatten().map(|cells| cells.store().plants()).sum();
+    workbench.land.is_growing = !is_shown || !here().all(|cells| cells.is_some_and(is_planted));
     // What has to be planted because somebody goes about is no work of the plan's.
     let has_begun = applied.is_planting && newest_generation(&forests, &applied.handle) > applied.generation_before;
-    let unplanted = of_plan().filter_map(|(_, cells)| cells.filter(|cells| !cells.is_planted()));
+    let unplanted = here().flatten().filter(|cells| !cells.is_planted());
     workbench.land.planted_share = unplanted.map(ForestCells::planted_share).reduce(f32::min).filter(|_| has_begun);
     if has_begun && workbench.land.planted_share.is_none() {
         applied.is_planting = false;
     }
 }
 
+/// The forests of a plan; those that have not begun have no cells.
+fn of_plan<'a>(
+    forests: &'a Query<(&Forest, Option<&ForestCells>)>,
+    plan: &'a Handle<ForestPlan>,
+) -> impl Iterator<Item = Option<&'a ForestCells>> {
+    forests.iter().filter(|(forest, _)| forest.plan == *plan).map(|(_, cells)| cells)
+}
+
 /// The newest generation of the forests of a plan; none where none has begun.
 fn newest_generation(forests: &Query<(&Forest, Option<&ForestCells>)>, plan: &Handle<ForestPlan>) -> Option<u64> {
-    let of_plan = forests.iter().filter(|(forest, _)| forest.plan == *plan);
-    of_plan.filter_map(|(_, cells)| Some(cells?.generation())).max()
+    of_plan(forests, plan).flatten().map(ForestCells::generation).max()
 }
 
 #[cfg(test)]
