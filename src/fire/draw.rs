@@ -8,7 +8,7 @@ use super::{
 use crate::{
     plugin_checks::{has_renderer, require_renderer_before},
     removal::remove_made,
-    render::{RenderCapabilities, SwayBuffers},
+    render::{RenderCapabilities, SwayBuffers, new_device::device_is_new},
     schedule::WindwoodSystems,
     wind::WindClock,
 };
@@ -39,7 +39,7 @@ impl Plugin for FireDrawPlugin {
         .add_observer(remove_made::<Fire, FireLight, FireMesh>)
         .add_systems(
             Update,
-            (show_fires, flicker_lights)
+            (remake_lost_meshes.run_if(device_is_new), show_fires, flicker_lights)
                 .chain()
                 .after(generate_flames)
                 .before(WindwoodSystems::SelectLod)
@@ -72,6 +72,15 @@ pub struct FireLight;
 const LIGHT_HEIGHT: f32 = 0.45;
 /// Beyond this distance the light gives less than this, lx: less than a full moon.
 const LEAST_ILLUMINANCE_LX: f32 = 0.1;
+
+/// Makes the meshes of all fires again, when they lay on a graphics device that was lost. Lights stay.
+fn remake_lost_meshes(mut meshes: ResMut<Assets<Mesh>>, mut fires: Query<(&Flames, &mut Mesh3d)>) {
+    for (flames, mut mesh) in &mut fires {
+        // To free the handle would be too late: the renderer asks for all vertices in this frame.
+        meshes.remove(&*mesh);
+        mesh.0 = meshes.add(fire_mesh(flames));
+    }
+}
 
 fn show_fires(
     mut commands: Commands,

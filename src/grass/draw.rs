@@ -9,7 +9,7 @@ use super::{
 use crate::{
     background::{Work, spawn_work},
     plugin_checks::{has_renderer, require_renderer_before},
-    render::{RenderCapabilities, SwayBuffers},
+    render::{RenderCapabilities, SwayBuffers, new_device::device_is_new},
 };
 use bevy::{
     asset::embedded_asset,
@@ -37,7 +37,7 @@ impl Plugin for GrassDrawPlugin {
         let can_draw = resource_exists::<RenderCapabilities>;
         app.add_plugins(MaterialPlugin::<GrassMaterial>::default()).add_observer(remove_patch_meshes).add_systems(
             Update,
-            (start_making_meshes, show_patches)
+            (remake_lost_meshes.run_if(device_is_new), start_making_meshes, show_patches)
                 .chain()
                 .after(super::components::finish_meadow_layouts)
                 .run_if(can_draw),
@@ -58,6 +58,19 @@ struct Shown(Arc<Vec<super::blades::Blade>>);
 struct MeshTask {
     task: Work<(Mesh, Aabb)>,
     meadow: Meadow,
+}
+
+/// Has all meshes made again, when they lay on a graphics device that was lost.
+fn remake_lost_meshes(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    shown: Query<(Entity, &Meadow, &Mesh3d), With<Shown>>,
+) {
+    for (entity, meadow, mesh) in &shown {
+        // To free the handle would be too late: the renderer asks for all vertices in this frame.
+        meshes.remove(mesh);
+        commands.entity(entity).remove::<Shown>().insert(meadow.clone());
+    }
 }
 
 /// Starts making the mesh of each meadow that is new. One of which only the look has changed keeps its mesh, if the mesh

@@ -11,7 +11,7 @@
 //! | `gpu` | uploads what changed, and runs the pose pass |
 //! | `impostors` | the mesh and the material of far trees, which a [`Forest`](crate::forest::Forest) plants |
 //!
-//! Beside them: `settings` and `capabilities`, which all may know; `buffers`, `pipeline` and `texture_image`, which rooms with materials of
+//! Beside them: `settings`, `capabilities` and `new_device`, which all may know; `buffers`, `pipeline` and `texture_image`, which rooms with materials of
 //! their own share; and `shaders`. `shaders/pose_pass.wesl` poses all beams once a frame, and `shaders/tree_vertex.wesl` moves every vertex
 //! with its beam: there is no work per tree and frame on the CPU.
 //!
@@ -25,6 +25,7 @@ pub(crate) mod impostors;
 pub(crate) mod instances;
 pub(crate) mod lighting;
 pub(crate) mod lod;
+pub(crate) mod new_device;
 pub(crate) mod pipeline;
 mod plugin;
 pub(crate) mod settings;

@@ -7,6 +7,7 @@ use super::{
         bare::redraw_bare_trees,
         bounds::{fit_live_bounds, fit_tree_bounds},
         components::DrawnTree,
+        forget::forget_prepared_species,
         layers::copy_render_layers,
         mesh_entities::update_tree_meshes,
         removal::{LostMeshes, note_lost_mesh, remove_tree_meshes, restore_lost_meshes},
@@ -15,7 +16,7 @@ use super::{
     gpu::{
         live_upload::{LiveUploads, upload_live_trees},
         pose_pass::{self, PoseDispatch},
-        upload::{PackedWind, UploadState, pack_incoming_wind, upload_frame, upload_winds},
+        upload::{PackedWind, UploadState, forget_uploads, pack_incoming_wind, upload_frame, upload_winds},
     },
     instances::{
         assign::{assign_instances, free_row, remove_models},
@@ -31,6 +32,7 @@ use super::{
         viewers::{LodViewers, update_lod_viewers},
         want_parts::want_parts,
     },
+    new_device::device_is_new,
     settings::{ActiveLevelOfDetail, LevelOfDetail, apply_level_of_detail},
     shader_files::load_shaders,
     species::{
@@ -124,15 +126,21 @@ impl Plugin for TreeRenderPlugin {
         let light =
             (find_lights, update_material_lights::<SwayExtension>.run_if(resource_changed::<TreeLights>)).chain();
         let can_draw = resource_exists::<RenderCapabilities>;
+        let forget = forget_prepared_species.before(drop_mesh_copies).in_set(WindwoodSystems::Bake);
         configure_sets(app);
         app.add_systems(
             Update,
             (
+                forget.after(regrow_trees).run_if(device_is_new),
                 prepare.chain().after(regrow_trees).in_set(WindwoodSystems::Bake).run_if(can_draw),
                 draw.chain().in_set(WindwoodSystems::SelectLod).run_if(can_draw),
                 light.after(WindwoodSystems::Bake),
                 pack.after(update_wind_exposure).before(WindwoodSystems::SelectLod),
             ),
+        )
+        .add_systems(
+            PostUpdate,
+            forget_uploads.in_set(WindwoodSystems::Upload).before(upload_winds).run_if(device_is_new),
         )
         .add_systems(
             PostUpdate,

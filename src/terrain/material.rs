@@ -9,6 +9,7 @@ use crate::{
     texture::TextureData,
 };
 use bevy::{
+    asset::InvalidGenerationError,
     image::ImageAddressMode,
     material::OpaqueRendererMethod,
     mesh::{MeshVertexAttribute, MeshVertexBufferLayoutRef, VertexFormat},
@@ -47,9 +48,21 @@ pub(super) struct GroundTextures {
 impl FromWorld for GroundTextures {
     fn from_world(world: &mut World) -> Self {
         let mut images = world.resource_mut::<Assets<Image>>();
-        let mut add = |texture: TextureData| images.add(image(&texture, ImageAddressMode::Repeat, ALL_MIPS));
+        let mut add = |texture: TextureData| images.add(tiled_image(&texture));
         Self { detail: add(ground_texture()), litter: add(litter_texture()) }
     }
+}
+
+impl GroundTextures {
+    /// Puts them on the graphics device again.
+    pub fn restore(&self, images: &mut Assets<Image>) -> Result<(), InvalidGenerationError> {
+        images.insert(&self.detail, tiled_image(&ground_texture()))?;
+        images.insert(&self.litter, tiled_image(&litter_texture()))
+    }
+}
+
+fn tiled_image(texture: &TextureData) -> Image {
+    image(texture, ImageAddressMode::Repeat, ALL_MIPS)
 }
 
 /// `Look` of the shader.

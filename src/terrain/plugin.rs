@@ -14,12 +14,13 @@ use bevy::prelude::*;
 use {
     super::{
         components::{GroundLook, Terrain, TerrainSettings},
-        ecs::stream::{TerrainChunk, TerrainChunks, begin_terrains, recolour_ground, stream_ground},
+        ecs::stream::{TerrainChunk, TerrainChunks, begin_terrains, recolour_ground, restore_ground, stream_ground},
         material::{GroundMaterial, GroundTextures},
     },
     crate::{
         plugin_checks::{has_renderer, require_renderer_before},
         removal::remove_made,
+        render::new_device::device_is_new,
         viewpoint::give_cameras_viewpoints,
     },
     bevy::{asset::embedded_asset, pbr::MaterialPlugin},
@@ -58,7 +59,10 @@ impl Plugin for TerrainDrawPlugin {
             .init_resource::<GroundTextures>()
             .add_observer(remove_made::<Terrain, TerrainChunk, TerrainChunks>);
         let stream = timed!(app, begin_terrains, recolour_ground, stream_ground);
-        app.add_systems(Update, stream.chain().in_set(WindwoodSystems::Stream));
+        app.add_systems(Update, stream.chain().in_set(WindwoodSystems::Stream)).add_systems(
+            Update,
+            restore_ground.before(begin_terrains).in_set(WindwoodSystems::Stream).run_if(device_is_new),
+        );
     }
 
     fn finish(&self, app: &mut App) {

@@ -21,12 +21,15 @@ pub(super) fn place_foliage(
     let mut tones = vec![0.0; beams.len()];
     let continuations = continuations(beams);
     let is_terminal = is_terminal(beams);
+    let last_branches_at = last_branches_at(beams);
     for (index, beam) in beams.iter().enumerate() {
         // A branch has a tone of its own, close to that of the branch it grows on.
         let own_tone: f32 = random.random();
         tones[index] = beam.parent.map_or(0.5, |parent| 0.6 * tones[parent as usize] + 0.4 * own_tone);
         let continues = beam.attach >= 1.0 && beam.parent.is_some_and(|p| beams[p as usize].order == beam.order);
         let first_at = match (beam.order < foliage.first_order, continues) {
+            // Past its last branch a stem is a young shoot: the leader of a spruce has needles.
+            (true, _) if beam.order == 0 => last_branches_at[index].unwrap_or(1.0),
             (true, _) => 1.0,
             (false, true) => 0.0,
             (false, false) => foliage.first_at,
@@ -43,6 +46,17 @@ pub(super) fn place_foliage(
         }
     }
     clusters
+}
+
+/// For each beam that bears others, where the last of them leaves it: a share of its length. 1 where one continues it.
+fn last_branches_at(beams: &[SkeletonBeam]) -> Vec<Option<f32>> {
+    let mut last = vec![None; beams.len()];
+    for beam in beams {
+        let Some(parent) = beam.parent else { continue };
+        let last_at: &mut Option<f32> = &mut last[parent as usize];
+        *last_at = Some(last_at.map_or(beam.attach, |at| at.max(beam.attach)));
+    }
+    last
 }
 
 struct Twig<'a> {

@@ -42,7 +42,8 @@ impl Plugin for WindGizmoPlugin {
     /// Whether there are gizmos is known only when all plugins have been added.
     fn finish(&self, app: &mut App) {
         if app.is_plugin_added::<GizmoPlugin>() {
-            app.add_systems(PostUpdate, draw_arrows.run_if(|settings: Res<WindGizmos>| settings.enabled));
+            let draw = draw_arrows.after(TransformSystems::Propagate);
+            app.add_systems(PostUpdate, draw.run_if(|settings: Res<WindGizmos>| settings.enabled));
         }
     }
 }

@@ -106,7 +106,7 @@ pub(super) fn hide_trees(
 
 fn mesh_of(diagram: Diagram) -> Mesh {
     let topology = if diagram.is_lines { PrimitiveTopology::LineList } else { PrimitiveTopology::TriangleList };
-    Mesh::new(topology, RenderAssetUsages::RENDER_WORLD)
+    Mesh::new(topology, RenderAssetUsages::default())
         .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, vec![[0.0, 1.0, 0.0]; diagram.positions.len()])
         .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, diagram.positions)
         .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, diagram.colours)

@@ -10,6 +10,7 @@
 //! A merged mesh needs no table of trees and no limit on them, and is culled as any mesh is. The alternative, one shared mesh whose slots read
 //! 16-byte rows, would save three quarters of the memory and cost a table to be kept in order.
 
+mod forget;
 mod near_mask;
 mod plugin;
 mod species;

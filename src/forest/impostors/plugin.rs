@@ -1,6 +1,7 @@
 //! Registers the drawing of forests.
 
 use super::{
+    forget::forget_impostors,
     near_mask::{free_near_masks, update_near_masks},
     species::{ImpostorSpeciesLibrary, bake_impostor_species},
     tiles::{ForestImpostors, ImpostorTile, stream_impostor_tiles},
@@ -21,7 +22,8 @@ use crate::{
             material::{ImpostorExtension, ImpostorMaterial},
             near_mask::NearMasks,
         },
-        lighting::{TreeLights, update_material_lights},
+        lighting::{TreeLights, find_lights, update_material_lights},
+        new_device::device_is_new,
     },
     schedule::WindwoodSystems,
     timing::timed,
@@ -51,10 +53,13 @@ impl Plugin for ForestRenderPlugin {
             .init_resource::<ImpostorSpeciesLibrary>();
         let stream = timed!(app, bake_impostor_species, stream_impostor_tiles);
         let mask = timed!(app, update_near_masks);
+        let light = update_material_lights::<ImpostorExtension>;
         let stream = stream.chain().after(copy_forest_layers).before(WindwoodSystems::Bake);
-        app.add_systems(Update, stream.run_if(can_draw))
+        let forget = forget_impostors.after(copy_forest_layers).before(bake_impostor_species);
+        app.add_systems(Update, forget.run_if(device_is_new))
+            .add_systems(Update, stream.run_if(can_draw))
             .add_systems(Update, draw_stumps.after(WindwoodSystems::Stream))
-            .add_systems(Update, update_material_lights::<ImpostorExtension>.run_if(resource_changed::<TreeLights>))
+            .add_systems(Update, light.after(find_lights).run_if(resource_changed::<TreeLights>))
             .add_systems(PostUpdate, mask.after(WindwoodSystems::Cull).before(WindwoodSystems::Upload));
     }
 

@@ -83,6 +83,11 @@ impl ImpostorSpeciesLibrary {
         self.baking.retain(|(other, _)| *other != id);
     }
 
+    /// The atlases have gone, with their device.
+    pub fn forget_all(&mut self) {
+        self.species.clear();
+    }
+
     fn bake(&mut self, id: AssetId<Species>, species: &Species) {
         let (species, settings, compresses) = (species.clone(), self.settings, self.compresses_textures);
         self.baking.retain(|(other, _)| *other != id);

@@ -14,6 +14,9 @@ use bevy::{
 };
 use std::{cmp::Ordering, ops::Range};
 
+/// Memory that stays for the writes of later frames: those of some ten thousand rows.
+const KEPT_BYTES: usize = 1 << 20;
+
 /// Pending writes in their order: in the main world since the last extraction, in the render world until they are done.
 #[derive(Resource, Default)]
 pub(crate) struct BufferWrites {
@@ -85,6 +88,8 @@ fn write_buffers(
     });
     if writes.is_empty() {
         bytes.clear();
+        // What is left of a table that was written as a whole would never be needed again.
+        bytes.shrink_to(KEPT_BYTES);
     }
 }
 

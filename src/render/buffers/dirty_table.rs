@@ -98,10 +98,20 @@ impl<T: Copy + Default> DirtyTable<T> {
         }
         let wanted = with_reserve(self.len()).max(FIRST_CAPACITY);
         self.capacity = wanted.min(self.most_rows).max(self.len());
+        self.mark_all_written();
+        true
+    }
+
+    fn mark_all_written(&mut self) {
         self.written.clear();
         self.written.extend(0..self.rows.len() as u32);
         self.is_written.fill(true);
-        true
+    }
+
+    /// The GPU buffer is gone: another is needed, with all rows.
+    pub fn forget_buffer(&mut self) {
+        self.capacity = 0;
+        self.mark_all_written();
     }
 
     /// Uploads what was written, run by run: the number of the first row, and the rows.
@@ -145,6 +155,20 @@ mod tests {
             assert_eq!(copy[..table.rows().len()], *table.rows(), "round {round}");
             assert!(!table.is_dirty());
         }
+    }
+
+    #[test]
+    fn a_buffer_that_is_gone_gets_all_rows_again() {
+        let mut table = DirtyTable::<u32>::default();
+        table.grow_to(40);
+        table.grow_capacity();
+        table.upload(|_, _| ());
+        assert!(!table.grow_capacity());
+        table.forget_buffer();
+        assert!(table.is_dirty() && table.grow_capacity());
+        let mut uploaded = 0;
+        table.upload(|_, rows| uploaded += rows.len());
+        assert_eq!((uploaded, table.capacity), (40, FIRST_CAPACITY));
     }
 
     #[test]

@@ -4,6 +4,7 @@ pub(crate) mod bare;
 pub(crate) mod bounds;
 pub(crate) mod components;
 pub(crate) mod counts;
+pub(crate) mod forget;
 pub(crate) mod layers;
 pub(crate) mod mesh_entities;
 pub(crate) mod removal;

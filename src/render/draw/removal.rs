@@ -15,10 +15,12 @@ pub(crate) struct LostMeshes(Vec<Entity>);
 pub(crate) fn remove_tree_meshes(removed: On<Remove<Tree>>, mut commands: Commands) {
     // Where the tree itself is despawned, its meshes are too.
     if let Ok(mut tree) = commands.get_entity(removed.entity) {
-        tree.queue_silenced(|mut tree: EntityWorldMut| {
-            tree.despawn_related::<TreeMeshes>().remove::<(TreeInstance, LodSelection, DrawnTree)>();
-        });
+        tree.queue_silenced(remove_all_drawn);
     }
+}
+
+pub(crate) fn remove_all_drawn(mut tree: EntityWorldMut) {
+    tree.despawn_related::<TreeMeshes>().remove::<(TreeInstance, LodSelection, DrawnTree)>();
 }
 
 /// Notes trees that lose a mesh.

@@ -57,6 +57,11 @@ impl LiveUploads {
         if self.is_first_half { [0, self.capacity] } else { [self.capacity, 0] }
     }
 
+    /// The buffer has gone, with its device.
+    pub fn forget_buffer(&mut self) {
+        self.capacity = 0;
+    }
+
     fn release(&mut self, tree: Entity) -> Option<u32> {
         let released = self.trees.remove(&tree)?;
         self.ranges.free(released.range);

@@ -145,6 +145,24 @@ impl Uploads<'_> {
     }
 }
 
+/// All that was uploaded has gone, with the device.
+pub(crate) fn forget_uploads(
+    mut tables: ResMut<InstanceTables>,
+    mut state: ResMut<UploadState>,
+    mut live: ResMut<LiveUploads>,
+) {
+    tables.forget_buffers();
+    live.forget_buffer();
+    *state = UploadState {
+        workgroups: state.workgroups.clone(),
+        pose_capacity: 0,
+        has_previous_half: false,
+        winds: [None, None],
+        posed: None,
+        ..*state
+    };
+}
+
 /// Rewrites a slot when another wind has moved into it; its weight is 0 at that moment. Under a wind whose tables are too large for the
 /// device trees stand at rest.
 pub(crate) fn upload_winds(

@@ -110,6 +110,11 @@ impl NearMasks {
         }
     }
 
+    /// The buffer has gone, with its device.
+    pub fn forget_buffer(&mut self) {
+        self.words.forget_buffer();
+    }
+
     /// Uploads what has changed.
     pub fn upload(&mut self, uploads: &mut TableUploads) {
         if self.words.is_dirty() {

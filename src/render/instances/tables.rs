@@ -212,6 +212,13 @@ impl InstanceTables {
         });
     }
 
+    /// The buffers have gone, with their device.
+    pub fn forget_buffers(&mut self) {
+        self.trees.forget_buffer();
+        self.beams.forget_buffer();
+        self.workgroups.table.forget_buffer();
+    }
+
     /// Poses visible trees that had no poses before, if there are some now. Returns whether any is left without.
     pub fn retry_unposed(&mut self) -> bool {
         if self.lacks_poses && self.freed_poses {

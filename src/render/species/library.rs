@@ -11,7 +11,7 @@ use crate::{
     tree::{Species, TreeModel, phenology::Phenology},
 };
 use bevy::{camera::primitives::Aabb, platform::collections::HashMap, prelude::*};
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
 /// All species, as far as they have been prepared.
 #[derive(Resource, Default)]
@@ -104,6 +104,12 @@ impl PreparedVariant {
         self.parts(|mesh| mesh.mesh.is_some())
     }
 
+    /// Those meshes.
+    pub fn meshes(&self) -> impl Iterator<Item = &Handle<Mesh>> {
+        let parts = self.lods.iter().flat_map(|lod| LevelPart::ALL.into_iter().filter_map(|part| lod.part(part)));
+        parts.filter_map(|prepared| prepared.mesh.as_ref())
+    }
+
     fn parts(&self, of: impl Fn(&PreparedMesh) -> bool) -> PartSet {
         let mut parts = PartSet::EMPTY;
         for (level, lod) in self.lods.iter().enumerate() {
@@ -180,6 +186,12 @@ impl SpeciesLibrary {
         if variant.demand.want(parts, there) {
             self.asked.push((species, model));
         }
+    }
+
+    /// Takes all variants out, in the order of their models. Nothing is asked for any longer.
+    pub fn take_all(&mut self) -> BTreeMap<AssetId<TreeModel>, PreparedVariant> {
+        self.asked.clear();
+        self.species.drain().flat_map(|(_, prepared)| prepared.variants).collect()
     }
 
     /// All variants of all species.

@@ -3,7 +3,7 @@
 //! Why not by `RenderAssetUsages::RENDER_WORLD`: of a mesh that is moved out of the main world, Bevy 0.20 computes the box anew, which it
 //! cannot once positions are compressed. Every vertex would then lie in the origin. A mesh that is copied keeps its box.
 
-use bevy::prelude::*;
+use bevy::{asset::RenderAssetUsages, prelude::*};
 
 /// Frames until a mesh that was added has been copied to the renderer, and one more.
 const FRAMES: usize = 3;
@@ -26,8 +26,10 @@ pub(crate) fn drop_mesh_copies(mut copies: ResMut<MeshCopies>, mut meshes: ResMu
     copies.rotate_right(1);
     for id in copies[0].drain(..) {
         // One that has gone meanwhile, or was dropped otherwise, has no copy.
-        let copy = meshes.bypass_change_detection().get_mut_untracked(id).map(Mesh::take_gpu_data);
-        drop(copy);
+        let Some(mesh) = meshes.bypass_change_detection().get_mut_untracked(id) else { continue };
+        drop(mesh.take_gpu_data());
+        // A renderer that gets another device asks for all meshes again, and this one has no vertices to give.
+        mesh.asset_usage = RenderAssetUsages::MAIN_WORLD;
     }
 }
 

@@ -38,6 +38,20 @@ pub(crate) struct PreparationQueue {
     bake: LodBakeSettings,
 }
 
+impl PreparationQueue {
+    /// Has all species prepared anew, at all ages of their trees.
+    pub fn start_again(&mut self, species_models: &SpeciesModels) {
+        self.running.clear();
+        self.wait_for_all(species_models);
+    }
+
+    fn wait_for_all(&mut self, species_models: &SpeciesModels) {
+        self.waiting.clear();
+        self.waiting.extend(species_models.stages());
+        self.waiting.make_contiguous().sort_unstable();
+    }
+}
+
 struct Preparation {
     species: AssetId<Species>,
     age_step: i32,
@@ -56,15 +70,14 @@ pub(crate) fn start_preparing_species(
     library: Res<SpeciesLibrary>,
     mut queue: ResMut<PreparationQueue>,
 ) {
-    let PreparationQueue { waiting, running, style, bake } = queue.bypass_change_detection();
-    waiting.extend(baked.read().map(|&SpeciesBaked { species, step }| (species, step)));
-    if *style != settings.0.style || *bake != settings.0.bake {
-        *style = settings.0.style;
-        bake.clone_from(&settings.0.bake);
-        waiting.clear();
-        waiting.extend(species_models.stages());
-        waiting.make_contiguous().sort_unstable();
+    let queue = queue.bypass_change_detection();
+    queue.waiting.extend(baked.read().map(|&SpeciesBaked { species, step }| (species, step)));
+    if queue.style != settings.0.style || queue.bake != settings.0.bake {
+        queue.style = settings.0.style;
+        queue.bake.clone_from(&settings.0.bake);
+        queue.wait_for_all(&species_models);
     }
+    let PreparationQueue { waiting, running, style, bake } = queue;
     let Some((id, age_step)) = waiting.pop_front() else { return };
     let Some(entry) = species_models.get(id) else { return };
     let Some(stage) = entry.stages.get(&age_step) else { return };

@@ -45,6 +45,21 @@ struct Built {
 }
 
 impl TerrainChunks {
+    fn new(settings: TerrainSettings, material: Handle<GroundMaterial>) -> Self {
+        Self {
+            pyramid: Pyramid::new(settings.shape()),
+            settings,
+            material,
+            building: Vec::new(),
+            chunks: HashMap::default(),
+            arrived: Vec::new(),
+            eyes: Vec::new(),
+            selected_from: Vec::new(),
+            is_complete: false,
+            has_told: false,
+        }
+    }
+
     /// Whether all ground that is wanted from where the viewers are is drawn.
     #[must_use]
     pub fn is_complete(&self) -> bool {
@@ -80,18 +95,31 @@ pub(in crate::terrain) fn begin_terrains(
         }
         let look = if look.validate().is_ok() { *look } else { GroundLook::default() };
         let material = before.map(|before| before.material.clone());
-        commands.entity(entity).insert(TerrainChunks {
-            pyramid: Pyramid::new(settings.shape()),
-            settings,
-            material: material.unwrap_or_else(|| materials.add(ground_material(&look, textures.clone()))),
-            building: Vec::new(),
-            chunks: HashMap::default(),
-            arrived: Vec::new(),
-            eyes: Vec::new(),
-            selected_from: Vec::new(),
-            is_complete: false,
-            has_told: false,
-        });
+        let material = material.unwrap_or_else(|| materials.add(ground_material(&look, textures.clone())));
+        commands.entity(entity).insert(TerrainChunks::new(settings, material));
+    }
+}
+
+/// Builds all ground again, when it lay on a graphics device that was lost.
+pub(in crate::terrain) fn restore_ground(
+    mut commands: Commands,
+    textures: Res<GroundTextures>,
+    mut images: ResMut<Assets<Image>>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut terrains: Query<&mut TerrainChunks>,
+    chunks: Query<(Entity, &Mesh3d), With<TerrainChunk>>,
+) {
+    if let Err(error) = textures.restore(&mut images) {
+        error!("textures of the ground: {error}");
+    }
+    for (chunk, mesh) in &chunks {
+        // To free the handle would be too late: the renderer asks for all vertices in this frame.
+        meshes.remove(mesh);
+        commands.entity(chunk).despawn();
+    }
+    for mut terrain in &mut terrains {
+        let (settings, material) = (terrain.settings, terrain.material.clone());
+        *terrain = TerrainChunks::new(settings, material);
     }
 }
 

@@ -1,0 +1,38 @@
+//! Forgets what was prepared of all species, when it lay on a graphics device that was lost. They are prepared again, and trees are drawn
+//! as new ones.
+
+use super::removal::remove_all_drawn;
+use crate::{
+    render::{
+        instances::components::TreeInstance,
+        species::{
+            library::{SpeciesLibrary, VariantRemoved},
+            load_parts::PartLoads,
+            prepare::PreparationQueue,
+        },
+    },
+    tree::SpeciesModels,
+};
+use bevy::prelude::*;
+
+pub(crate) fn forget_prepared_species(
+    mut commands: Commands,
+    species_models: Res<SpeciesModels>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut library: ResMut<SpeciesLibrary>,
+    mut queue: ResMut<PreparationQueue>,
+    mut loads: ResMut<PartLoads>,
+    mut removed: MessageWriter<VariantRemoved>,
+    drawn: Query<Entity, With<TreeInstance>>,
+) {
+    for (model, variant) in library.take_all() {
+        // To free the handles would be too late: the renderer asks for all vertices in this frame.
+        variant.meshes().for_each(|mesh| drop(meshes.remove(mesh)));
+        removed.write(VariantRemoved(model));
+    }
+    *loads = PartLoads::default();
+    queue.start_again(&species_models);
+    for tree in &drawn {
+        commands.entity(tree).queue_silenced(remove_all_drawn);
+    }
+}
