@@ -33,9 +33,9 @@ fn forest() -> TestForest {
 
 /// Whether all of it has its meshes, and these have their vertices.
 fn is_drawn(world: &mut World) -> bool {
-    let are_there = |world: &mut World, entities: Vec<AssetId<Mesh>>| {
+    let are_there = |world: &mut World, wanted: Vec<AssetId<Mesh>>| {
         let meshes = world.resource::<Assets<Mesh>>();
-        !entities.is_empty() && entities.iter().all(|mesh| meshes.contains(*mesh))
+        !wanted.is_empty() && wanted.iter().all(|mesh| meshes.contains(*mesh))
     };
     let grass = world.query_filtered::<&Mesh3d, With<GrassPatch>>().iter(world).map(AssetId::from).collect();
     let fires = world.query_filtered::<&Mesh3d, With<Fire>>().iter(world).map(AssetId::from).collect();
@@ -48,7 +48,7 @@ fn drawn_picture(forest: &mut TestForest) -> RgbaImage {
     forest.picture()
 }
 
-/// Share of the pixels that are another colour.
+/// Share of the pixels that are another colour: the order in which trees are drawn may change a few by as much as 8 of 255.
 fn difference(one: &RgbaImage, other: &RgbaImage) -> f32 {
     let apart = |a: &image::Rgba<u8>, b: &image::Rgba<u8>| a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 8);
     let differs = one.pixels().zip(other.pixels()).filter(|(a, b)| apart(a, b)).count();

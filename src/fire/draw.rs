@@ -8,7 +8,10 @@ use super::{
 use crate::{
     plugin_checks::{has_renderer, require_renderer_before},
     removal::remove_made,
-    render::{RenderCapabilities, SwayBuffers, new_device::device_is_new},
+    render::{
+        RenderCapabilities, SwayBuffers,
+        new_device::{device_is_new, remove_lost_mesh},
+    },
     schedule::WindwoodSystems,
     wind::WindClock,
 };
@@ -76,8 +79,7 @@ const LEAST_ILLUMINANCE_LX: f32 = 0.1;
 /// Makes the meshes of all fires again, when they lay on a graphics device that was lost. Lights stay.
 fn remake_lost_meshes(mut meshes: ResMut<Assets<Mesh>>, mut fires: Query<(&Flames, &mut Mesh3d)>) {
     for (flames, mut mesh) in &mut fires {
-        // To free the handle would be too late: the renderer asks for all vertices in this frame.
-        meshes.remove(&*mesh);
+        remove_lost_mesh(&*mesh, &mut meshes);
         mesh.0 = meshes.add(fire_mesh(flames));
     }
 }

@@ -9,7 +9,10 @@ use super::{
 use crate::{
     background::{Work, spawn_work},
     plugin_checks::{has_renderer, require_renderer_before},
-    render::{RenderCapabilities, SwayBuffers, new_device::device_is_new},
+    render::{
+        RenderCapabilities, SwayBuffers,
+        new_device::{device_is_new, remove_lost_mesh},
+    },
 };
 use bevy::{
     asset::embedded_asset,
@@ -67,8 +70,7 @@ fn remake_lost_meshes(
     shown: Query<(Entity, &Meadow, &Mesh3d), With<Shown>>,
 ) {
     for (entity, meadow, mesh) in &shown {
-        // To free the handle would be too late: the renderer asks for all vertices in this frame.
-        meshes.remove(mesh);
+        remove_lost_mesh(mesh, &mut meshes);
         commands.entity(entity).remove::<Shown>().insert(meadow.clone());
     }
 }

@@ -4,8 +4,13 @@
 
 use bevy::{prelude::*, render::renderer::RenderDevice};
 
-/// Whether the renderer has another device than in the last frame. So it has in the first one, too, in which nothing is there to be made
-/// again.
-pub(crate) fn device_is_new(device: Option<Res<RenderDevice>>) -> bool {
-    device.is_some_and(|device| device.is_changed())
+/// Whether the renderer has another device than in the last frame. The first is not another.
+pub(crate) fn device_is_new(device: Option<Res<RenderDevice>>, mut has_had_one: Local<bool>) -> bool {
+    device.is_some_and(|device| std::mem::replace(&mut *has_had_one, true) && device.is_changed())
+}
+
+/// Removes a mesh that lay on the lost device alone. To free its handle would be too late: the renderer asks for all vertices again in
+/// this frame.
+pub(crate) fn remove_lost_mesh(mesh: impl Into<AssetId<Mesh>>, meshes: &mut Assets<Mesh>) {
+    meshes.remove(mesh);
 }

@@ -50,10 +50,10 @@ pub(super) fn place_foliage(
 
 /// For each beam that bears others, where the last of them leaves it: a share of its length. 1 where one continues it.
 fn last_branches_at(beams: &[SkeletonBeam]) -> Vec<Option<f32>> {
-    let mut last = vec![None; beams.len()];
+    let mut last: Vec<Option<f32>> = vec![None; beams.len()];
     for beam in beams {
         let Some(parent) = beam.parent else { continue };
-        let last_at: &mut Option<f32> = &mut last[parent as usize];
+        let last_at = &mut last[parent as usize];
         *last_at = Some(last_at.map_or(beam.attach, |at| at.max(beam.attach)));
     }
     last

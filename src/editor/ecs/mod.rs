@@ -1,7 +1,6 @@
 //! The workbench in an app.
 
 mod camera;
-mod egui_frames;
 #[cfg(feature = "export")]
 mod export;
 mod land;
@@ -39,8 +38,7 @@ use std::{path::PathBuf, time::Duration};
 /// The workbench: panels that edit species, woods, the ground, the wind and levels of detail while the program runs. Add it after
 /// [`WindwoodPlugins`](crate::WindwoodPlugins); F2 opens and closes it.
 ///
-/// It adds `bevy_egui`'s plugin where there is none, and draws with a camera of its own. A game with panels of its own adds that plugin
-/// before: else egui rests while the workbench is closed.
+/// It adds `bevy_egui`'s plugin where there is none, and draws with a camera of its own.
 #[derive(Clone, Debug, Default)]
 pub struct EditorPlugin {
     /// The file of the species that is edited first. In a game, its trees change with it where the game has loaded that file.
@@ -72,7 +70,7 @@ impl Plugin for EditorPlugin {
     fn build(&self, app: &mut App) {
         require_plugin::<Self, TreeRenderPlugin>(app);
         if !app.is_plugin_added::<EguiPlugin>() {
-            app.add_plugins((EguiPlugin::default(), egui_frames::plugin));
+            app.add_plugins(EguiPlugin::default());
             let mut settings = app.world_mut().resource_mut::<EguiGlobalSettings>();
             settings.auto_create_primary_context = false;
             // What is typed or dragged in a panel is not meant for the game.

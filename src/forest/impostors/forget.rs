@@ -4,7 +4,7 @@ use super::{
     species::ImpostorSpeciesLibrary,
     tiles::{ForestImpostors, ImpostorTile},
 };
-use crate::render::impostors::near_mask::NearMasks;
+use crate::render::{impostors::near_mask::NearMasks, new_device::remove_lost_mesh};
 use bevy::prelude::*;
 
 pub(super) fn forget_impostors(
@@ -16,8 +16,7 @@ pub(super) fn forget_impostors(
     tiles: Query<(Entity, &Mesh3d), With<ImpostorTile>>,
 ) {
     for (tile, mesh) in &tiles {
-        // To free the handle would be too late: the renderer asks for all vertices in this frame.
-        meshes.remove(mesh);
+        remove_lost_mesh(mesh, &mut meshes);
         commands.entity(tile).despawn();
     }
     for forest in &forests {

@@ -5,6 +5,7 @@ use super::removal::remove_all_drawn;
 use crate::{
     render::{
         instances::components::TreeInstance,
+        new_device::remove_lost_mesh,
         species::{
             library::{SpeciesLibrary, VariantRemoved},
             load_parts::PartLoads,
@@ -26,8 +27,7 @@ pub(crate) fn forget_prepared_species(
     drawn: Query<Entity, With<TreeInstance>>,
 ) {
     for (model, variant) in library.take_all() {
-        // To free the handles would be too late: the renderer asks for all vertices in this frame.
-        variant.meshes().for_each(|mesh| drop(meshes.remove(mesh)));
+        variant.meshes().for_each(|mesh| remove_lost_mesh(mesh, &mut meshes));
         removed.write(VariantRemoved(model));
     }
     *loads = PartLoads::default();

@@ -2,6 +2,7 @@
 
 use crate::{
     background::{Work, spawn_work},
+    render::new_device::remove_lost_mesh,
     setting::valid_or_last,
     terrain::{
         chunk::{ChunkVertices, chunk_vertices},
@@ -113,8 +114,7 @@ pub(in crate::terrain) fn restore_ground(
         error!("textures of the ground: {error}");
     }
     for (chunk, mesh) in &chunks {
-        // To free the handle would be too late: the renderer asks for all vertices in this frame.
-        meshes.remove(mesh);
+        remove_lost_mesh(mesh, &mut meshes);
         commands.entity(chunk).despawn();
     }
     for mut terrain in &mut terrains {
