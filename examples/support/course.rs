@@ -13,14 +13,13 @@ use super::{
 };
 use bevy::{
     app::PluginGroupBuilder, camera::RenderTarget, camera_controller::free_camera::FreeCameraPlugin,
-    core_pipeline::prepass::DepthPrepass, ecs::lifecycle::Add, light::NotShadowCaster, math::DVec2, prelude::*,
+    core_pipeline::prepass::DepthPrepass, ecs::lifecycle::Add, math::DVec2, prelude::*,
 };
 use bevy_windwood::prelude::*;
 use clap::Parser;
 use std::{
     path::PathBuf,
     process::ExitCode,
-    sync::Arc,
     time::{Duration, Instant},
 };
 
@@ -173,14 +172,5 @@ pub fn spawn_meadow(mut commands: Commands) {
         Terrain::new(meadow_height_m),
         TerrainSettings { reach_m: 1000.0, builds_at_once: 64, chunks_per_frame: 64, ..default() },
     ));
-    let short = Tuft { blades: 14, shortest_m: 0.1, longest_m: 0.4, narrowest_m: 0.006, widest_m: 0.013, ..default() };
-    let broad = Tuft { narrowest_m: 0.02, widest_m: 0.04, radius_m: 0.4, ..short.clone() };
-    for (side_m, tufts_per_m2, tuft, [thins_from_m, vanishes_at_m]) in
-        [(8.0, 11.0, short, [12.0, 34.0]), (20.0, 1.2, broad, [30.0, 110.0])]
-    {
-        let sward = Sward { width_m: side_m, depth_m: side_m, tufts_per_m2, tuft, ..default() };
-        let patch = GrassPatch { sward, look: meadow::look(thins_from_m, vanishes_at_m), ..default() };
-        let ground = GrassGround(Arc::new(meadow_height_m));
-        commands.spawn((GrassField { patch, patches_per_frame: 16 }, ground, NotShadowCaster));
-    }
+    meadow::spawn_meadow(&mut commands, meadow_height_m, None, 0);
 }

@@ -12,9 +12,11 @@ pub fn spawn_meadow(
     seed: u64,
 ) {
     let ground = Arc::new(height_m);
-    let near = Sward { width_m: 8.0, depth_m: 8.0, tufts_per_m2: 11.0, tuft: short(), seed, ..default() };
-    let far = Sward { width_m: 20.0, depth_m: 20.0, tufts_per_m2: 1.2, tuft: broad(), seed: seed + 1, ..default() };
-    for (sward, look) in [(near, look(9.0, 30.0)), (far, look(25.0, 100.0))] {
+    let near = Sward { width_m: 8.0, depth_m: 8.0, tufts_per_m2: 19.0, tuft: short(), seed, ..default() };
+    let far = Sward { width_m: 20.0, depth_m: 20.0, tufts_per_m2: 2.0, tuft: broad(), seed: seed + 1, ..default() };
+    let near_look = GrassLook { thins_from_m: 9.0, vanishes_at_m: 32.0, ..default() };
+    let far_look = GrassLook { appears_from_m: 26.0, thins_from_m: 30.0, vanishes_at_m: 140.0, ..default() };
+    for (sward, look) in [(near, near_look), (far, far_look)] {
         let patch = GrassPatch { sward, look, ..default() };
         let field = GrassField { patch, patches_per_frame: 16 };
         let mut field = commands.spawn((field, GrassGround(ground.clone()), NotShadowCaster));
@@ -29,26 +31,14 @@ fn short() -> Tuft {
         blades: 14,
         shortest_m: 0.12,
         longest_m: 0.46,
-        narrowest_m: 0.006,
-        widest_m: 0.014,
-        radius_m: 0.16,
+        narrowest_m: 0.01,
+        widest_m: 0.026,
+        radius_m: 0.18,
         ..default()
     }
 }
 
 /// Tufts that are seen from afar: as much grass in fewer blades.
 fn broad() -> Tuft {
-    Tuft { blades: 12, narrowest_m: 0.02, widest_m: 0.04, radius_m: 0.4, ..short() }
-}
-
-/// The colours of the ground's own grass.
-pub fn look(thins_from_m: f32, vanishes_at_m: f32) -> GrassLook {
-    GrassLook {
-        root_colour: [0.035, 0.055, 0.016],
-        tip_colour: [0.125, 0.19, 0.05],
-        dry_colour: [0.22, 0.20, 0.10],
-        thins_from_m,
-        vanishes_at_m,
-        ..default()
-    }
+    Tuft { blades: 12, narrowest_m: 0.05, widest_m: 0.1, radius_m: 0.45, ..short() }
 }

@@ -21,8 +21,11 @@ use bevy_windwood::{
 use noise::{NoiseFn, OpenSimplex};
 use std::sync::Arc;
 
-/// Distance between clumps of grass, m.
+/// Distances between clumps of grass, and between the tufts at their edges, m.
 const CLUMP_M: f64 = 3.5;
+const TUFT_M: f64 = 0.6;
+/// Slope up to which grass grows everywhere.
+const GRASSY_SLOPE: f64 = 0.7;
 
 const PLAN: &str = "forests/rockies.forest.ron";
 
@@ -130,8 +133,9 @@ fn meadow_m(landscape: &Landscape, cover: Option<Arc<dyn Cover>>) -> impl Fn(DVe
     let (landscape, clumps) = (landscape.clone(), OpenSimplex::new(1));
     move |at| {
         let shade = cover.as_ref().map_or(0.0, |cover| f64::from(cover.share(at)));
-        let lack = 2.2 * shade + 1.4 * landscape.ground.slope(at) - 0.9;
-        let is_bare = clumps.get((at / CLUMP_M).to_array()) < lack;
+        let lack = 2.2 * shade + 3.0 * (landscape.ground.slope(at) - GRASSY_SLOPE).max(0.0) - 0.9;
+        let noise = |scale_m: f64| clumps.get((at / scale_m).to_array());
+        let is_bare = noise(CLUMP_M) + 0.4 * noise(TUFT_M) < lack;
         if is_bare { f64::NAN } else { f64::from(landscape.height_m(at.x as f32, at.y as f32)) }
     }
 }

@@ -13,8 +13,10 @@
 //! for a beam with its base at `b`, of direction `d` and length `L`, whose tip is turned by `Theta`: see `pose.rs`. It needs no
 //! trigonometry: quaternions come from polynomials in the half angle.
 
-use super::beam::BeamDynamics;
-use bevy::math::{Quat, Vec3A};
+use super::{
+    beam::BeamDynamics,
+    lanes::{Lanes, Number, Rotation, Vector, lanes},
+};
 
 /// `phi_1'(1)`, the slope at the tip of the first mode with a tip of 1: the tip's angle for a deflection of one length.
 pub const SLOPE_TIP: f32 = 1.376_505_4;
@@ -33,46 +35,72 @@ pub const MODE_SHAPE: [[f32; 4]; 7] = [
 
 /// A point of a beam's axis with all that does not change from frame to frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct AxisPoint {
+pub(super) struct AxisPoint<T = f32> {
     /// `b + L s d`.
-    pub rest: Vec3A,
-    direction: Vec3A,
+    pub rest: Vector<T>,
+    direction: Vector<T>,
     /// `h / 2`.
-    half_turn: f32,
+    half_turn: T,
     /// Coefficients of T, T^2, T^3 in `L (X - s)`.
-    along: [f32; 3],
+    along: [T; 3],
     /// Coefficients of 1, T, T^2 in `L Y`.
-    across: [f32; 3],
+    across: [T; 3],
 }
 
 /// What bending does at a point of the axis.
-pub(super) struct Bend {
-    pub rotation: Quat,
-    pub displacement: Vec3A,
+pub(super) struct Bend<T> {
+    pub rotation: Rotation<T>,
+    pub displacement: Vector<T>,
 }
 
 impl AxisPoint {
+    /// The foot of a beam of no length.
+    pub const ORIGIN: Self = Self {
+        rest: Vector([0.0; 3]),
+        direction: Vector([0.0, 1.0, 0.0]),
+        half_turn: 0.0,
+        along: [0.0; 3],
+        across: [0.0; 3],
+    };
+
     pub fn new(beam: &BeamDynamics, s: f32) -> Self {
         let s = s.clamp(0.0, 1.0);
         let [h, h1, h2, h3, h4, h5, h6] = mode_shape(s);
         let length = beam.length_m;
         Self {
-            rest: Vec3A::from(beam.base + length * s * beam.direction),
-            direction: Vec3A::from(beam.direction),
+            rest: Vector((beam.base + length * s * beam.direction).to_array()),
+            direction: Vector(beam.direction.to_array()),
             half_turn: 0.5 * h,
             along: [-length * h2 / 2.0, length * h4 / 24.0, -length * h6 / 720.0],
             across: [length * h1, -length * h3 / 6.0, length * h5 / 120.0],
         }
     }
+}
 
-    #[inline]
-    pub fn bend(&self, tip_angle: Vec3A) -> Bend {
+impl AxisPoint<Lanes> {
+    /// Points of as many beams, side by side.
+    pub fn side_by_side(point: impl Fn(usize) -> AxisPoint) -> Self {
+        let [half_turn] = lanes(|lane| [point(lane).half_turn]);
+        Self {
+            rest: Vector(lanes(|lane| point(lane).rest.0)),
+            direction: Vector(lanes(|lane| point(lane).direction.0)),
+            half_turn,
+            along: lanes(|lane| point(lane).along),
+            across: lanes(|lane| point(lane).across),
+        }
+    }
+}
+
+impl<T: Number> AxisPoint<T> {
+    /// For the angle by which the tip is turned, rad, as a vector in the sense of the deflection.
+    #[inline(always)]
+    pub fn bend(&self, tip_angle: &Vector<T>) -> Bend<T> {
         let t = tip_angle.length_squared();
         let along = t * (self.along[0] + t * (self.along[1] + t * self.along[2]));
         let across = self.across[0] + t * (self.across[1] + t * self.across[2]);
         Bend {
-            rotation: quat_from_half_vector(self.direction.cross(tip_angle) * self.half_turn),
-            displacement: self.direction * along + tip_angle * across,
+            rotation: rotation_by_twice(self.direction.cross(tip_angle) * self.half_turn),
+            displacement: self.direction * along + *tip_angle * across,
         }
     }
 }
@@ -86,16 +114,16 @@ pub(crate) fn mode_shape(s: f32) -> [f32; 7] {
     })
 }
 
-/// The quaternion of a rotation by twice the vector `half`, for up to some 1.2 rad in all.
+/// A rotation by twice the vector `half`, for up to some 1.2 rad in all.
 ///
 /// The series are of the 4th and 6th degree; what they leave of the quaternion's length, below 1e-5, one step of
 /// Newton's method for the inverse root removes.
-#[inline]
-fn quat_from_half_vector(half: Vec3A) -> Quat {
+#[inline(always)]
+fn rotation_by_twice<T: Number>(half: Vector<T>) -> Rotation<T> {
+    let number = T::from;
     let x2 = half.length_squared();
-    let sine = 1.0 + x2 * (-1.0 / 6.0 + x2 * (1.0 / 120.0));
-    let cosine = 1.0 + x2 * (-1.0 / 2.0 + x2 * (1.0 / 24.0 + x2 * (-1.0 / 720.0)));
-    let inverse_norm = 1.5 - 0.5 * (cosine * cosine + sine * sine * x2);
-    let axis = half * (sine * inverse_norm);
-    Quat::from_xyzw(axis.x, axis.y, axis.z, cosine * inverse_norm)
+    let sine = number(1.0) + x2 * (number(-1.0 / 6.0) + x2 * number(1.0 / 120.0));
+    let cosine = number(1.0) + x2 * (number(-1.0 / 2.0) + x2 * (number(1.0 / 24.0) + x2 * number(-1.0 / 720.0)));
+    let inverse_norm = number(1.5) - number(0.5) * (cosine * cosine + sine * sine * x2);
+    Rotation { vector: half * (sine * inverse_norm), scalar: cosine * inverse_norm }
 }

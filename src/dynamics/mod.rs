@@ -11,7 +11,8 @@
 //!    follow slow gusts, and ring in fast ones, which all places share. `table_place` reads it.
 //! 4. `beam`: how a beam answers a wind: by how much at its height (`mean_wind`) and in its stand (`stand_wind`), and as which
 //!    oscillators.
-//! 5. `pose`: a tree's bent beams, each attached to its parent, from the table. `bend` is the shape of one of them.
+//! 5. `pose`: a tree's bent beams, each attached to its parent, from the table. `bend` is the shape of one of them, `lanes` has the
+//!    numbers of several side by side.
 //! 6. `leaf`: leaves that turn into the wind and flutter (26).
 //! 7. `exact_step`: one oscillator, step by step, for motion that is not periodic. `live`: trees that a game touches move by it, beside
 //!    the table.
@@ -29,6 +30,7 @@ pub(crate) mod bend;
 pub(crate) mod direction_map;
 mod exact_step;
 pub(crate) mod frequency_classes;
+mod lanes;
 pub(crate) mod leaf;
 pub(crate) mod live;
 pub(crate) mod load_basis;

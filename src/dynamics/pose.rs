@@ -23,11 +23,16 @@
 //! A point bound at `s` turns about the axis with it: `p -> R(s) (p - (b + L s d)) + bent(s)`, with `R(s)` the rotation
 //! about `d x Theta` by `h(s) |Theta|`. A child moves with its parent in the same way, from the point where it is
 //! attached. So the pose of a vertex is the product of its ancestors' motions, all in rest coordinates.
+//!
+//! Each beam's pose is a long chain of operations after its parent's. Beams with equally many ancestors do not wait for one
+//! another, and are posed eight at a time (`beam_group.rs`), in half of the time.
 
 use super::beam::{BeamDynamics, BeamWind, NO_PARENT};
 use super::bend::{AxisPoint, SLOPE_TIP};
 use super::direction_map::DirectionMap;
+use super::lanes::{LANES, Lanes, Number, Vector};
 use super::oscillator_grid::RowWeights;
+use beam_group::BeamGroup;
 use bevy::math::{Mat3, Quat, Vec3, Vec3A, Vec4};
 
 /// The angle in radians that the tip of a branch approaches in an ever stronger wind (63 degrees).
@@ -42,10 +47,10 @@ const FREE_ANGLE_BOUND: f32 = 1e18;
 
 /// Below this speed, m/s, no wind holds beams back.
 const LEAST_WIND_M_S: f32 = 1e-3;
-/// Square of the share of the way to the wind up to which a bend is not held back: it would be by 1e-5.
-const FREE_BEND: f32 = 0.1;
-/// Greatest square of that share, so that its fourth power is finite.
+/// Greatest square of the share of the way to the wind that a beam bends, so that its fourth power is finite.
 const MOST_BEND: f32 = 1e8;
+/// The least square of that way: that of beams which point into the wind.
+const LEAST_WAY: f32 = 1e-20;
 
 /// How a beam is bent, and what its ancestors do to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,44 +77,47 @@ impl BeamPose {
     /// the rotation there.
     pub fn carry(&self, beam: &BeamDynamics, s: f32, rest_point: Vec3) -> (Vec3, Quat) {
         let point = AxisPoint::new(beam, s);
-        let bend = point.bend(self.tip_angle);
-        let arm = Vec3A::from(rest_point) - point.rest;
+        let bend = point.bend(&Vector(self.tip_angle.to_array()));
+        let vector = |v: Vector<f32>| Vec3A::from_array(v.0);
+        let arm = Vec3A::from(rest_point) - vector(point.rest);
         // Adding what moved, rather than subtracting and adding the axis, keeps the rest pose exact.
-        let bent = Vec3A::from(rest_point) + (bend.rotation * arm - arm) + bend.displacement;
-        (Vec3::from(self.rotation * bent + self.translation), self.rotation * bend.rotation)
+        let moved = vector(bend.rotation.displacement(&Vector(arm.to_array())) + bend.displacement);
+        let turn = Quat::from_vec4(Vec3A::from_array(bend.rotation.vector.0).extend(bend.rotation.scalar));
+        (Vec3::from(self.rotation * (Vec3A::from(rest_point) + moved) + self.translation), self.rotation * turn)
     }
 }
 
 /// `Theta` from `Theta_free`: the same direction, but never beyond the limit.
-#[inline]
-fn saturate(free: Vec3A, limit_rad: f32) -> Vec3A {
-    let bounded = free.clamp(Vec3A::splat(-FREE_ANGLE_BOUND), Vec3A::splat(FREE_ANGLE_BOUND));
+#[inline(always)]
+fn saturate<T: Number>(free: Vector<T>, limit_rad: T) -> Vector<T> {
+    let bounded = Vector(free.0.map(|angle| angle.at_most(FREE_ANGLE_BOUND).at_least(-FREE_ANGLE_BOUND)));
     bounded * (limit_rad / (limit_rad * limit_rad + bounded.length_squared()).sqrt())
 }
 
 /// The bend of a beam that points to `carried` before it, held to that which points it into the wind.
-#[inline]
-fn held_to_wind(tip_angle: Vec3A, carried: Vec3A, downwind: Vec3A) -> Vec3A {
-    let way = carried.distance_squared(downwind);
-    let share = tip_angle.length_squared();
-    if share < FREE_BEND * way {
-        return tip_angle;
-    }
-    let share = (share / way).min(MOST_BEND);
+#[inline(always)]
+fn held_to_wind<T: Number>(tip_angle: Vector<T>, carried: Vector<T>, downwind: Vector<T>) -> Vector<T> {
+    let way = (carried - downwind).length_squared().at_least(LEAST_WAY);
+    let share = (tip_angle.length_squared() / way).at_most(MOST_BEND);
     let fourth = share * share * (share * share);
-    tip_angle / (1.0 + fourth).sqrt().sqrt().sqrt()
+    tip_angle * (T::from(1.0) / (T::from(1.0) + fourth).sqrt().sqrt().sqrt())
 }
 
 /// One tree's beams, prepared for one wind: what does not change from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub struct TreePoser {
-    beams: Vec<PreparedBeam>,
+    /// Parents before their children.
+    groups: Vec<BeamGroup>,
+    /// How many ancestors each beam has, and the beams' indices by that.
+    ancestors: Vec<u32>,
+    order: Vec<u32>,
     /// The rows of the table that the beams read, in order, and the place of each row of the table among these.
     rows: Vec<u32>,
     places: Vec<u32>,
 }
 
-#[derive(Clone, Copy, Debug)]
+/// What is known of a beam before the wind of the moment.
+#[derive(Clone, Copy)]
 struct PreparedBeam {
     /// Free tip angle in the mean wind, and for a unit of each signal's response, in rad.
     mean: Vec3A,
@@ -121,6 +129,37 @@ struct PreparedBeam {
     read: RowWeights,
     parent: u32,
     angle_limit_rad: f32,
+}
+
+impl PreparedBeam {
+    /// Stands on the ground and does not move.
+    const REST: Self = Self {
+        mean: Vec3A::ZERO,
+        moving: [Vec3A::ZERO; 4],
+        direction: Vec3A::Y,
+        attach: AxisPoint::ORIGIN,
+        read: RowWeights { rows: [0; 4], weights: [0.0; 4] },
+        parent: NO_PARENT,
+        angle_limit_rad: 1.0,
+    };
+
+    /// Of one beam among those of its tree, without a load.
+    fn unloaded(beams: &[BeamDynamics], index: usize) -> Self {
+        let beam = &beams[index];
+        let parent = parent_of(beams, index);
+        Self {
+            direction: Vec3A::from(beam.direction),
+            attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
+            parent: if parent.is_some() { beam.parent } else { NO_PARENT },
+            angle_limit_rad: beam.angle_limit_rad.max(LEAST_ANGLE_LIMIT_RAD),
+            ..Self::REST
+        }
+    }
+}
+
+/// A beam with a parent that does not precede it stands on the ground.
+fn parent_of(beams: &[BeamDynamics], index: usize) -> Option<&BeamDynamics> {
+    beams[..index].get(beams[index].parent as usize)
 }
 
 /// What the poses of a tree in one wind depend on beside its beams.
@@ -149,9 +188,8 @@ impl TreePoser {
     /// Prepares the beams of a tree, in place of the former ones. To be repeated when the wind's basis, the tree's
     /// orientation or the season changes. A beam with a parent that does not precede it stands on the ground.
     pub fn prepare(&mut self, beams: &[BeamDynamics], tree: &TreeInWind) {
-        self.beams.clear();
-        self.beams.extend(beams.iter().enumerate().map(|(index, beam)| {
-            let parent = beams[..index].get(beam.parent as usize);
+        self.group(beams, |index| {
+            let beam = &beams[index];
             let coefficients = tree.map.coefficients(tree.to_wind * beam.direction);
             let answer = beam.sway(tree.leaf_share).answer(&tree.wind, tree.scale);
             let free_angle = |load: Vec3, gain: f32| {
@@ -161,14 +199,27 @@ impl TreePoser {
             PreparedBeam {
                 mean: free_angle(coefficients.mean, answer.mean_gain),
                 moving: coefficients.moving.map(|moving| free_angle(moving, answer.gust_gain)),
-                direction: Vec3A::from(beam.direction),
-                attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
                 read: answer.read,
-                parent: if parent.is_some() { beam.parent } else { NO_PARENT },
-                angle_limit_rad: beam.angle_limit_rad.max(LEAST_ANGLE_LIMIT_RAD),
+                ..PreparedBeam::unloaded(beams, index)
             }
-        }));
+        });
         self.find_rows(tree.wind.grid.rows());
+    }
+
+    /// Puts beams with equally many ancestors side by side.
+    fn group(&mut self, beams: &[BeamDynamics], prepare: impl Fn(usize) -> PreparedBeam) {
+        let Self { groups, ancestors, order, .. } = self;
+        ancestors.clear();
+        for index in 0..beams.len() {
+            let of_parent = parent_of(beams, index).map(|_| ancestors[beams[index].parent as usize]);
+            ancestors.push(of_parent.map_or(0, |ancestors| ancestors + 1));
+        }
+        order.clear();
+        order.extend(0..beams.len() as u32);
+        order.sort_unstable_by_key(|&index| (ancestors[index as usize], index));
+        let generations = order.chunk_by(|&a, &b| ancestors[a as usize] == ancestors[b as usize]);
+        groups.clear();
+        groups.extend(generations.flat_map(|of| of.chunks(LANES)).map(|of| BeamGroup::new(of, &prepare)));
     }
 
     /// Notes which of the table's rows are read, and has the beams point at these.
@@ -176,13 +227,13 @@ impl TreePoser {
         const UNUSED: u32 = u32::MAX;
         self.places.clear();
         self.places.resize(table_rows, UNUSED);
-        self.beams.iter().flat_map(|beam| beam.read.rows).for_each(|row| self.places[row as usize] = 0);
+        self.groups.iter_mut().flat_map(BeamGroup::rows_mut).for_each(|row| self.places[*row as usize] = 0);
         self.rows.clear();
         for (row, place) in (0..).zip(&mut self.places).filter(|(_, place)| **place != UNUSED) {
             *place = self.rows.len() as u32;
             self.rows.push(row);
         }
-        for row in self.beams.iter_mut().flat_map(|beam| &mut beam.read.rows) {
+        for row in self.groups.iter_mut().flat_map(BeamGroup::rows_mut) {
             *row = self.places[*row as usize];
         }
     }
@@ -194,43 +245,40 @@ impl TreePoser {
 
     /// Beams with a constant bend, by a free tip angle in rad across each beam, in any wind.
     pub(crate) fn bent(beams: &[BeamDynamics], free_angle: impl Fn(&BeamDynamics) -> Vec3) -> Self {
-        let prepared = beams.iter().enumerate().map(|(index, beam)| {
-            let parent = beams[..index].get(beam.parent as usize);
-            PreparedBeam {
-                mean: Vec3A::from(free_angle(beam)),
-                moving: [Vec3A::ZERO; 4],
-                direction: Vec3A::from(beam.direction),
-                attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
-                read: RowWeights::default(),
-                parent: if parent.is_some() { beam.parent } else { NO_PARENT },
-                angle_limit_rad: beam.angle_limit_rad.max(LEAST_ANGLE_LIMIT_RAD),
-            }
+        let mut poser = Self::default();
+        poser.group(beams, |index| PreparedBeam {
+            mean: Vec3A::from(free_angle(&beams[index])),
+            ..PreparedBeam::unloaded(beams, index)
         });
-        Self { beams: prepared.collect(), ..Self::default() }
+        poser
     }
 
     /// Number of beams.
     pub fn len(&self) -> usize {
-        self.beams.len()
+        self.order.len()
     }
 
     /// Whether there is no beam.
     pub fn is_empty(&self) -> bool {
-        self.beams.is_empty()
+        self.order.is_empty()
     }
 
     /// Adds `weight` times each beam's free tip angle, for [`pose_free`](Self::pose_free): while one wind fades into another,
     /// their loads add up before the beams saturate.
     pub(crate) fn add_free_angles(&self, responses: &[Vec4], weight: f32, free: &mut [Vec3A]) {
-        for (beam, free) in self.beams.iter().zip(free) {
-            *free += weight * beam.free_angle(response_of(beam, responses));
+        for group in &self.groups {
+            for (beam, angle) in group.by_beam(&group.free_angles(responses)) {
+                if let Some(free) = free.get_mut(beam) {
+                    *free += weight * angle;
+                }
+            }
         }
     }
 
     /// Poses all beams for given free tip angles, one a beam, and as [`pose`](Self::pose) for the wind at the tree.
     pub(crate) fn pose_free(&self, free: &[Vec3A], wind: Vec3, out: &mut [BeamPose]) {
         let posed = out.len().min(free.len());
-        self.pose_by(|index, _| free[index], wind, &mut out[..posed]);
+        self.pose_by(|group| group.take(free), wind, &mut out[..posed]);
     }
 
     /// Poses all beams, for the responses of its [`rows`](Self::rows) at the tree's place and time
@@ -238,14 +286,14 @@ impl TreePoser {
     /// wind. No beam bends past the wind at the tree at that time: `wind` is its velocity in the tree's coordinates, m/s; where it is 0, beams
     /// bend as far as their own limits let them. Beams beyond the length of `out` are left out.
     pub fn pose(&self, responses: &[Vec4], wind: Vec3, out: &mut [BeamPose]) {
-        self.pose_by(|_, beam| beam.free_angle(response_of(beam, responses)), wind, out);
+        self.pose_by(|group| group.free_angles(responses), wind, out);
     }
 
     #[inline]
-    fn pose_by(&self, free_angle: impl Fn(usize, &PreparedBeam) -> Vec3A, wind: Vec3, out: &mut [BeamPose]) {
-        let downwind = direction_of(wind);
-        for (index, beam) in self.beams.iter().enumerate().take(out.len()) {
-            out[index] = beam.pose(saturate(free_angle(index, beam), beam.angle_limit_rad), downwind, out);
+    fn pose_by(&self, free_angles: impl Fn(&BeamGroup) -> Vector<Lanes>, wind: Vec3, out: &mut [BeamPose]) {
+        let downwind = direction_of(wind).map(|downwind| Vector(downwind.to_array().map(Lanes::splat)));
+        for group in &self.groups {
+            group.pose(free_angles(group), downwind, out);
         }
     }
 }
@@ -256,43 +304,6 @@ fn direction_of(wind: Vec3) -> Option<Vec3A> {
     (speed_m_s > LEAST_WIND_M_S && speed_m_s.is_finite()).then(|| Vec3A::from(wind / speed_m_s))
 }
 
-#[inline]
-fn response_of(beam: &PreparedBeam, responses: &[Vec4]) -> Vec4 {
-    let RowWeights { rows, weights } = &beam.read;
-    let of_row = |index: usize| responses.get(rows[index] as usize).copied().unwrap_or(Vec4::ZERO) * weights[index];
-    (of_row(0) + of_row(1)) + (of_row(2) + of_row(3))
-}
-
-impl PreparedBeam {
-    #[inline]
-    fn free_angle(&self, response: Vec4) -> Vec3A {
-        let [a, b, c, d] = self.moving;
-        self.mean + a * response.x + b * response.y + c * response.z + d * response.w
-    }
-
-    /// The pose of this beam, given those of all before it.
-    #[inline]
-    fn pose(&self, tip_angle: Vec3A, downwind: Option<Vec3A>, before: &[BeamPose]) -> BeamPose {
-        let (rotation, translation) = match before.get(self.parent as usize) {
-            Some(parent) => self.motion_of_parent(parent),
-            None => (Quat::IDENTITY, Vec3A::ZERO),
-        };
-        let tip_angle = match downwind {
-            Some(downwind) => held_to_wind(tip_angle, rotation * self.direction, downwind),
-            None => tip_angle,
-        };
-        BeamPose { tip_angle, rotation, translation }
-    }
-
-    /// The rigid motion of this beam's rest frame: its parent's own, after the parent's bend where this one is attached.
-    #[inline]
-    fn motion_of_parent(&self, parent: &BeamPose) -> (Quat, Vec3A) {
-        let bend = self.attach.bend(parent.tip_angle);
-        let rest = self.attach.rest;
-        let moved = parent.rotation * (rest - bend.rotation * rest + bend.displacement);
-        (parent.rotation * bend.rotation, parent.translation + moved)
-    }
-}
-
+mod beam_group;
 #[cfg(test)]
 mod tests;

@@ -88,6 +88,9 @@ pub struct GrassLook {
     pub translucency: f32,
     /// Share of the sky's light that comes through closed crowns to the grass below them ([`GrassShade`](super::GrassShade)), 0 to 1.
     pub sky_under_trees: f32,
+    /// Nearer than this, m, ever fewer blades are drawn, and within its half none: 0 to 10000. For broad blades, that stand for those of
+    /// another meadow where this thins out.
+    pub appears_from_m: f32,
     /// Farther than this, m, ever fewer blades are drawn, and the rest so much wider: 0.1 to 10000.
     pub thins_from_m: f32,
     /// At this distance, m, the last blades have shrunk to nothing: 1 to 10000.
@@ -95,13 +98,15 @@ pub struct GrassLook {
 }
 
 impl Default for GrassLook {
+    /// The colours of the grass of [`GroundLook`](crate::terrain::GroundLook), so that the ground between blades is as a meadow.
     fn default() -> Self {
         Self {
-            root_colour: [0.022, 0.042, 0.010],
-            tip_colour: [0.20, 0.29, 0.065],
-            dry_colour: [0.31, 0.26, 0.11],
+            root_colour: [0.05, 0.075, 0.02],
+            tip_colour: [0.145, 0.20, 0.048],
+            dry_colour: [0.22, 0.20, 0.10],
             translucency: 0.35,
             sky_under_trees: 0.1,
+            appears_from_m: 0.0,
             thins_from_m: 18.0,
             vanishes_at_m: 90.0,
         }
@@ -192,6 +197,7 @@ impl GrassLook {
         require_colour("tip_colour", self.tip_colour)?;
         require_colour("dry_colour", self.dry_colour)?;
         require("translucency", self.translucency, 0.0..=1.0)?;
+        require("appears_from_m", self.appears_from_m, 0.0..=10_000.0)?;
         require("thins_from_m", self.thins_from_m, 0.1..=10_000.0)?;
         require("vanishes_at_m", self.vanishes_at_m, 1.0..=10_000.0)
     }

@@ -137,13 +137,13 @@ impl Default for GroundLook {
     /// A temperate mountain side in summer.
     fn default() -> Self {
         Self {
-            grass: [0.30, 0.37, 0.19],
-            dry_grass: [0.43, 0.41, 0.28],
+            grass: [0.29, 0.36, 0.18],
+            dry_grass: [0.39, 0.39, 0.24],
             earth: [0.33, 0.29, 0.23],
             rock: [0.44, 0.43, 0.42],
             snow: [0.93, 0.95, 0.98],
-            litter: [0.29, 0.23, 0.16],
-            pale_litter: [0.52, 0.41, 0.26],
+            litter: [0.26, 0.225, 0.175],
+            pale_litter: [0.43, 0.375, 0.29],
             canopy: [0.11, 0.165, 0.095],
             sky_under_trees: 0.1,
             bare_slope_deg: [27.0, 40.0],

@@ -23,7 +23,8 @@
 //!
 //! Resonance is where the deflection lags behind the wind most, in the sense of its imaginary part: every mode adds its share of the static
 //! deflection there, over the width of a damped resonance. Branches as fast as the one that carries them divide its mode in many;
-//! that is one peak again.
+//! that is one peak again. Of two peaks, as of a stem that is bent and sways along two axes, the one counts by which gusts move it
+//! further: their amplitude is as `sqrt(f S(f)) ~ f^(-1/3)`, with Kolmogorov's spectrum `S ~ f^(-5/3)`.
 
 use super::{
     articulated::{Articulated, Piece, Probe},
@@ -43,6 +44,8 @@ const DAMPING_RATIO: f32 = 0.12;
 const LOWEST_SHARE: f64 = 0.6;
 const STEP: f64 = 0.17;
 const FOURS: usize = 4;
+/// Amplitude of gusts as a power of their frequency.
+const GUSTS: f64 = -1.0 / 3.0;
 /// Where on a branch its motion is taken, as a share of its length.
 const SENSOR: f64 = 2.0 / 3.0;
 
@@ -89,13 +92,38 @@ fn lowest_hz(branches: &[LoadedBranch], responses: &[BranchResponse]) -> f64 {
     if slowest_hz.is_finite() { LOWEST_SHARE * slowest_hz } else { 1.0 }
 }
 
-/// The greatest value and its neighbours tell where between them the peak is.
+/// Where gusts move a branch most, by the lowest frequency.
 fn peak(lags: &[f32]) -> Option<f64> {
-    let highest = (0..lags.len()).max_by(|&a, &b| lags[a].total_cmp(&lags[b]))?;
-    let (before, after) = (*lags.get(highest.checked_sub(1)?)?, *lags.get(highest + 1)?);
-    let curvature = before - 2.0 * lags[highest] + after;
-    let off = 0.5 * (before - after) / curvature;
-    (off.is_finite() && lags[highest] > 0.0).then(|| ratio(highest as f64 + f64::from(off)))
+    let motion = |index: usize| f64::from(lags[index]) * ratio(GUSTS * index as f64);
+    let is_highest = |&index: &usize| motion(index) >= motion(index - 1) && motion(index) > motion(index + 1);
+    let modes = (1..lags.len() - 1).filter(is_highest).map(|index| mode_near(lags, index));
+    modes
+        .filter(|mode| mode.motion > 0.0 && mode.motion.is_finite())
+        .max_by(|a, b| a.motion.total_cmp(&b.motion))
+        .map(|mode| mode.frequency)
+}
+
+struct Mode {
+    /// By the lowest that is tried.
+    frequency: f64,
+    /// Of the sensor in gusts.
+    motion: f64,
+}
+
+/// The mode of which these lags are, at a sample and its neighbours. That of one mode is `c f / ((f_n^2 - f^2)^2 + (2 zeta f_n f)^2)`,
+/// so that `f` over it is a polynomial of the second degree in `f^2`: three samples tell all of it.
+fn mode_near(lags: &[f32], index: usize) -> Mode {
+    let x: [f64; 3] = std::array::from_fn(|k| ratio((index + k - 1) as f64).powi(2));
+    let y: [f64; 3] = std::array::from_fn(|k| x[k].sqrt() / f64::from(lags[index + k - 1]));
+    let slopes = [(y[1] - y[0]) / (x[1] - x[0]), (y[2] - y[1]) / (x[2] - x[1])];
+    let curvature = (slopes[1] - slopes[0]) / (x[2] - x[0]);
+    let lowest = 0.5 * (x[0] + x[1] - slopes[0] / curvature);
+    let natural = lowest / (1.0 - 2.0 * f64::from(DAMPING_RATIO).powi(2));
+    // Where several modes run together these are not one's lags.
+    let square = if curvature > 0.0 { natural.clamp(x[0], x[2]) } else { x[1] };
+    let there = y[0] + (slopes[0] + curvature * (square - x[1])) * (square - x[0]);
+    let frequency = square.sqrt();
+    Mode { frequency, motion: frequency / there * frequency.powf(GUSTS) }
 }
 
 /// A branch's place where it grows, its pieces and its sensor.
@@ -222,4 +250,40 @@ fn pieces_of(branch: &LoadedBranch) -> Vec<Piece> {
         pieces[piece_at(&branch.swaying_hinges, lump.attach_m)].bear(lump);
     }
     pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lags of modes of these frequencies (by the lowest that is tried) and shares.
+    fn lags(modes: &[(f64, f64)]) -> Vec<f32> {
+        let lag = |frequency: f64| -> f64 {
+            let of_mode = |&(natural, share): &(f64, f64)| {
+                let r = frequency / natural;
+                let damping = 2.0 * f64::from(DAMPING_RATIO) * r;
+                share * damping / ((1.0 - r * r).powi(2) + damping * damping)
+            };
+            modes.iter().map(of_mode).sum()
+        };
+        (0..4 * FOURS).map(|index| lag(ratio(index as f64)) as f32).collect()
+    }
+
+    #[test]
+    fn one_mode_is_found_exactly() {
+        for natural in [1.5, 2.0, 3.3, 5.0, 9.0] {
+            let found = peak(&lags(&[(natural, 1.0)])).unwrap();
+            assert!((found / natural - 1.0).abs() < 1e-4, "{found} of {natural}");
+        }
+    }
+
+    #[test]
+    fn of_two_modes_that_are_as_strong_the_slower_counts() {
+        for (slower, faster) in [(0.5, 0.5), (0.48, 0.52), (0.6, 0.4)] {
+            let found = peak(&lags(&[(2.0, slower), (3.0, faster)])).unwrap();
+            assert!((found / 2.0 - 1.0).abs() < 0.03, "{found}");
+        }
+        assert!(peak(&lags(&[(2.0, 0.3), (3.0, 0.7)])).unwrap() > 2.9, "the stronger one");
+        assert_eq!(peak(&[0.0; 4 * FOURS]), None);
+    }
 }
