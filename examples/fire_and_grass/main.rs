@@ -7,6 +7,7 @@
 //!
 //! `cargo run --example fire_and_grass -- --help` lists the options.
 
+mod fireplace;
 mod ground;
 mod options;
 mod scene;

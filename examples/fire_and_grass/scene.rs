@@ -1,15 +1,14 @@
 //! Meadow, fire, logs and trees.
 
 use crate::{
-    ground,
+    fireplace, ground,
     options::{Options, View},
     support::{dusk, options::SceneOptions, scene::Scene},
     window,
 };
 use bevy::{light::NotShadowCaster, math::DVec2, prelude::*};
 use bevy_windwood::prelude::*;
-use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
-use std::{f32::consts::TAU, sync::Arc};
+use std::sync::Arc;
 
 /// What the scene is made from.
 #[derive(Resource)]
@@ -68,6 +67,7 @@ fn spawn_scene(
     assets: Res<AssetServer>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
+    mut images: ResMut<Assets<Image>>,
 ) {
     let seed = scene.options.scene.wind.seed;
     let earth = StandardMaterial { perceptual_roughness: 1.0, reflectance: 0.05, ..default() };
@@ -77,7 +77,7 @@ fn spawn_scene(
         Fire { shape: FireShape { seed, ..default() }, look: FireLook { casts_shadows: true, ..default() } },
         Transform::from_xyz(0.0, 0.03, 0.0),
     ));
-    spawn_fireplace(&mut commands, &mut meshes, &mut materials, seed);
+    fireplace::spawn_fireplace(&mut commands, &mut meshes, &mut materials, &mut images, seed);
     if !scene.options.no_trees {
         spawn_trees(&mut commands, &assets);
     }
@@ -97,57 +97,6 @@ fn spawn_meadow(commands: &mut Commands, seed: u64) {
             GrassGround(Arc::new(height_m)),
             Transform::from_xyz(middle.x, 0.0, middle.y),
             NotShadowCaster,
-        ));
-    }
-}
-
-/// Spawns logs that lean together in the fire, a ring of stones, and two trunks to sit on.
-fn spawn_fireplace(
-    commands: &mut Commands,
-    meshes: &mut Assets<Mesh>,
-    materials: &mut Assets<StandardMaterial>,
-    seed: u64,
-) {
-    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
-    let matt =
-        |base_color: Color| StandardMaterial { base_color, perceptual_roughness: 0.95, reflectance: 0.1, ..default() };
-    let charred = materials.add(matt(Color::srgb(0.10, 0.075, 0.06)));
-    let bark = materials.add(matt(Color::srgb(0.29, 0.22, 0.16)));
-    let stone = materials.add(matt(Color::srgb(0.36, 0.35, 0.34)));
-    let log = meshes.add(Cylinder::new(0.055, 0.75).mesh().resolution(10));
-    for number in 0..6 {
-        let turn = TAU * (number as f32 + random.random_range(-0.25..0.25)) / 6.0;
-        let out = Vec3::new(turn.cos(), 0.0, turn.sin());
-        let lying = Quat::from_rotation_arc(Vec3::Y, (-out + Vec3::Y * random.random_range(0.35..0.8)).normalize());
-        let place = out * 0.33 + Vec3::Y * 0.15;
-        commands.spawn((
-            Mesh3d(log.clone()),
-            MeshMaterial3d(charred.clone()),
-            Transform::from_translation(place).with_rotation(lying),
-            // The light is between them: their shadows would darken everything.
-            NotShadowCaster,
-        ));
-    }
-    let pebble = meshes.add(Sphere::new(0.13).mesh().ico(2).unwrap_or_else(|_| Sphere::new(0.13).into()));
-    for number in 0..15 {
-        let turn = TAU * (number as f32 + random.random_range(-0.2..0.2)) / 15.0;
-        let place = Vec3::new(turn.cos(), 0.0, turn.sin()) * 0.68 + Vec3::Y * 0.04;
-        let size = Vec3::new(random.random_range(0.7..1.15), random.random_range(0.55..0.85), 1.0);
-        let turned = Quat::from_rotation_y(random.random_range(0.0..TAU));
-        commands.spawn((
-            Mesh3d(pebble.clone()),
-            MeshMaterial3d(stone.clone()),
-            Transform::from_translation(place).with_rotation(turned).with_scale(size),
-        ));
-    }
-    let trunk = meshes.add(Cylinder::new(0.2, 1.7).mesh().resolution(20));
-    for (place, turn) in [(Vec2::new(-1.75, -0.35), 1.35), (Vec2::new(1.5, -1.35), -0.75)] {
-        let lying = Quat::from_rotation_y(turn) * Quat::from_rotation_z(0.5 * std::f32::consts::PI);
-        let at = Vec3::new(place.x, ground::height_m(place) + 0.16, place.y);
-        commands.spawn((
-            Mesh3d(trunk.clone()),
-            MeshMaterial3d(bark.clone()),
-            Transform::from_translation(at).with_rotation(lying),
         ));
     }
 }

@@ -26,6 +26,7 @@
 
 pub(crate) mod admittance;
 pub(crate) mod beam;
+pub(crate) mod beam_pose;
 pub(crate) mod bend;
 pub(crate) mod direction_map;
 mod exact_step;
@@ -48,6 +49,7 @@ mod test_beams;
 
 pub use admittance::{admittance, equivalent_size_m};
 pub use beam::{BeamAnswer, BeamDynamics, BeamSway, BeamWind, DRAG_SPEED_M_S, NO_PARENT};
+pub use beam_pose::BeamPose;
 pub use bend::{MODE_SHAPE, SLOPE_TIP};
 pub use direction_map::{DirectionMap, LoadCoefficients};
 pub use exact_step::{ExactStep, OscillatorState};
@@ -57,7 +59,7 @@ pub use live::{BeamLoad, Capsule, Contacts, LiveBeam, LiveSteps, LiveTree, Swept
 pub use load_basis::{LoadBasis, LoadBasisKind};
 pub use mean_wind::MeanWind;
 pub use oscillator_grid::{OscillatorGrid, RowWeights};
-pub use pose::{BeamPose, TIP_ANGLE_LIMIT, TreeInWind, TreePoser};
+pub use pose::{TIP_ANGLE_LIMIT, TreeInWind, TreePoser};
 pub use response::ResponseTable;
 pub use stand_wind::{Speeds, StandWind};
 pub use table_place::TablePlace;

@@ -27,81 +27,19 @@
 //! Each beam's pose is a long chain of operations after its parent's. Beams with equally many ancestors do not wait for one
 //! another, and are posed eight at a time (`beam_group.rs`), in half of the time.
 
-use super::beam::{BeamDynamics, BeamWind, NO_PARENT};
-use super::bend::{AxisPoint, SLOPE_TIP};
+use super::beam::{BeamDynamics, BeamWind};
+use super::beam_pose::BeamPose;
+use super::bend::SLOPE_TIP;
 use super::direction_map::DirectionMap;
-use super::lanes::{LANES, Lanes, Number, Vector};
-use super::oscillator_grid::RowWeights;
-use beam_group::BeamGroup;
-use bevy::math::{Mat3, Quat, Vec3, Vec3A, Vec4};
+use super::lanes::{LANES, Lanes, Vector};
+use beam_group::{BeamGroup, PreparedBeam, parent_of};
+use bevy::math::{Mat3, Vec3, Vec3A, Vec4};
 
 /// The angle in radians that the tip of a branch approaches in an ever stronger wind (63 degrees).
 pub const TIP_ANGLE_LIMIT: f32 = 1.1;
 
-/// The least limit of a tip's angle, in radians: a beam without one is as good as rigid.
-const LEAST_ANGLE_LIMIT_RAD: f32 = 1e-6;
-
-/// Free angles beyond this, in radians and by component, are cut off before their squares overflow. Nothing smaller is cut, for that would
-/// turn the bend out of the plane across the beam.
-const FREE_ANGLE_BOUND: f32 = 1e18;
-
 /// Below this speed, m/s, no wind holds beams back.
 const LEAST_WIND_M_S: f32 = 1e-3;
-/// Greatest square of the share of the way to the wind that a beam bends, so that its fourth power is finite.
-const MOST_BEND: f32 = 1e8;
-/// The least square of that way: that of beams which point into the wind.
-const LEAST_WAY: f32 = 1e-20;
-
-/// How a beam is bent, and what its ancestors do to it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BeamPose {
-    /// Angle of the tip in radians, as a vector in the sense of the deflection, in the tree's rest coordinates.
-    pub tip_angle: Vec3A,
-    /// Rotation that the ancestors give to the beam's rest frame.
-    pub rotation: Quat,
-    /// Translation that the ancestors give to the beam's rest frame, in metres, after the rotation.
-    pub translation: Vec3A,
-}
-
-impl Default for BeamPose {
-    fn default() -> Self {
-        Self::REST
-    }
-}
-
-impl BeamPose {
-    /// The pose in a calm.
-    pub const REST: Self = Self { tip_angle: Vec3A::ZERO, rotation: Quat::IDENTITY, translation: Vec3A::ZERO };
-
-    /// Where `rest_point`, bound at `s` (0 to 1) of this pose's beam, is now, in metres in the tree's coordinates, and
-    /// the rotation there.
-    pub fn carry(&self, beam: &BeamDynamics, s: f32, rest_point: Vec3) -> (Vec3, Quat) {
-        let point = AxisPoint::new(beam, s);
-        let bend = point.bend(&Vector(self.tip_angle.to_array()));
-        let vector = |v: Vector<f32>| Vec3A::from_array(v.0);
-        let arm = Vec3A::from(rest_point) - vector(point.rest);
-        // Adding what moved, rather than subtracting and adding the axis, keeps the rest pose exact.
-        let moved = vector(bend.rotation.displacement(&Vector(arm.to_array())) + bend.displacement);
-        let turn = Quat::from_vec4(Vec3A::from_array(bend.rotation.vector.0).extend(bend.rotation.scalar));
-        (Vec3::from(self.rotation * (Vec3A::from(rest_point) + moved) + self.translation), self.rotation * turn)
-    }
-}
-
-/// `Theta` from `Theta_free`: the same direction, but never beyond the limit.
-#[inline(always)]
-fn saturate<T: Number>(free: Vector<T>, limit_rad: T) -> Vector<T> {
-    let bounded = Vector(free.0.map(|angle| angle.at_most(FREE_ANGLE_BOUND).at_least(-FREE_ANGLE_BOUND)));
-    bounded * (limit_rad / (limit_rad * limit_rad + bounded.length_squared()).sqrt())
-}
-
-/// The bend of a beam that points to `carried` before it, held to that which points it into the wind.
-#[inline(always)]
-fn held_to_wind<T: Number>(tip_angle: Vector<T>, carried: Vector<T>, downwind: Vector<T>) -> Vector<T> {
-    let way = (carried - downwind).length_squared().at_least(LEAST_WAY);
-    let share = (tip_angle.length_squared() / way).at_most(MOST_BEND);
-    let fourth = share * share * (share * share);
-    tip_angle * (T::from(1.0) / (T::from(1.0) + fourth).sqrt().sqrt().sqrt())
-}
 
 /// One tree's beams, prepared for one wind: what does not change from frame to frame.
 #[derive(Clone, Debug, Default)]
@@ -114,52 +52,6 @@ pub struct TreePoser {
     /// The rows of the table that the beams read, in order, and the place of each row of the table among these.
     rows: Vec<u32>,
     places: Vec<u32>,
-}
-
-/// What is known of a beam before the wind of the moment.
-#[derive(Clone, Copy)]
-struct PreparedBeam {
-    /// Free tip angle in the mean wind, and for a unit of each signal's response, in rad.
-    mean: Vec3A,
-    moving: [Vec3A; 4],
-    direction: Vec3A,
-    /// Where on the parent this beam is attached.
-    attach: AxisPoint,
-    /// Of the rows in `TreePoser::rows`.
-    read: RowWeights,
-    parent: u32,
-    angle_limit_rad: f32,
-}
-
-impl PreparedBeam {
-    /// Stands on the ground and does not move.
-    const REST: Self = Self {
-        mean: Vec3A::ZERO,
-        moving: [Vec3A::ZERO; 4],
-        direction: Vec3A::Y,
-        attach: AxisPoint::ORIGIN,
-        read: RowWeights { rows: [0; 4], weights: [0.0; 4] },
-        parent: NO_PARENT,
-        angle_limit_rad: 1.0,
-    };
-
-    /// Of one beam among those of its tree, without a load.
-    fn unloaded(beams: &[BeamDynamics], index: usize) -> Self {
-        let beam = &beams[index];
-        let parent = parent_of(beams, index);
-        Self {
-            direction: Vec3A::from(beam.direction),
-            attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
-            parent: if parent.is_some() { beam.parent } else { NO_PARENT },
-            angle_limit_rad: beam.angle_limit_rad.max(LEAST_ANGLE_LIMIT_RAD),
-            ..Self::REST
-        }
-    }
-}
-
-/// A beam with a parent that does not precede it stands on the ground.
-fn parent_of(beams: &[BeamDynamics], index: usize) -> Option<&BeamDynamics> {
-    beams[..index].get(beams[index].parent as usize)
 }
 
 /// What the poses of a tree in one wind depend on beside its beams.

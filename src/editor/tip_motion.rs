@@ -6,7 +6,8 @@ use super::spectrum::{Band, Transform, spectrum};
 use crate::{
     dynamics::{
         BeamDynamics, FrequencyClasses, NO_PARENT,
-        pose::{BeamPose, TreeInWind, TreePoser},
+        beam_pose::BeamPose,
+        pose::{TreeInWind, TreePoser},
     },
     sway::WindResponse,
     tree::TreeModel,

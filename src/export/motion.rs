@@ -10,7 +10,10 @@ use super::{
     skin::{Skin, tip},
 };
 use crate::{
-    dynamics::pose::{BeamPose, TreeInWind, TreePoser},
+    dynamics::{
+        beam_pose::BeamPose,
+        pose::{TreeInWind, TreePoser},
+    },
     sway::WindResponse,
     tree::TreeModel,
 };

@@ -9,7 +9,8 @@ use super::{
 use crate::{
     dynamics::{
         RestingLeaf,
-        pose::{BeamPose, TreeInWind, TreePoser},
+        beam_pose::BeamPose,
+        pose::{TreeInWind, TreePoser},
         stand_wind::{StandWind, WindAtTree},
     },
     tree::{

@@ -10,8 +10,9 @@
 use super::vertices::{LeafVertices, WoodVertices};
 use crate::dynamics::{
     beam::BeamDynamics,
+    beam_pose::BeamPose,
     bend::{SLOPE_TIP, mode_shape},
-    pose::{BeamPose, TreePoser},
+    pose::TreePoser,
 };
 use bevy::math::Vec3;
 

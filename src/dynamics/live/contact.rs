@@ -15,7 +15,7 @@
 //! than its own force would: a walker parts a hazel, and an oak's trunk stops him.
 
 use super::oscillators::LiveTree;
-use crate::dynamics::{beam::BeamDynamics, bend::mode_shape, pose::BeamPose};
+use crate::dynamics::{beam::BeamDynamics, beam_pose::BeamPose, bend::mode_shape};
 use bevy::math::{Quat, Vec3, Vec3A};
 
 /// A ball that is moved along a line.

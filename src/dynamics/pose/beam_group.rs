@@ -1,16 +1,72 @@
 //! Beams whose parents are posed before any of them: they are posed side by side.
 
-use super::{BeamPose, PreparedBeam, held_to_wind, saturate};
 use crate::dynamics::{
+    beam::{BeamDynamics, NO_PARENT},
+    beam_pose::BeamPose,
     bend::AxisPoint,
-    lanes::{LANES, Lanes, Rotation, Vector, lanes},
+    lanes::{LANES, Lanes, Number, Rotation, Vector, lanes},
     oscillator_grid::RowWeights,
 };
 use bevy::math::{Quat, Vec3A, Vec4};
 use std::array::from_fn;
 
+/// The least limit of a tip's angle, in radians: a beam without one is as good as rigid.
+const LEAST_ANGLE_LIMIT_RAD: f32 = 1e-6;
+/// Free angles beyond this, in radians and by component, are cut off before their squares overflow. Nothing smaller is cut, for that would
+/// turn the bend out of the plane across the beam.
+const FREE_ANGLE_BOUND: f32 = 1e18;
+/// Greatest square of the share of the way to the wind that a beam bends, so that its fourth power is finite.
+const MOST_BEND: f32 = 1e8;
+/// The least square of that way: that of beams which point into the wind.
+const LEAST_WAY: f32 = 1e-20;
 /// In a lane without a beam.
 const NO_BEAM: u32 = u32::MAX;
+
+/// What is known of a beam before the wind of the moment.
+#[derive(Clone, Copy)]
+pub(super) struct PreparedBeam {
+    /// Free tip angle in the mean wind, and for a unit of each signal's response, in rad.
+    pub mean: Vec3A,
+    pub moving: [Vec3A; 4],
+    pub direction: Vec3A,
+    /// Where on the parent this beam is attached.
+    pub attach: AxisPoint,
+    /// Of the rows in `TreePoser::rows`.
+    pub read: RowWeights,
+    pub parent: u32,
+    pub angle_limit_rad: f32,
+}
+
+impl PreparedBeam {
+    /// Stands on the ground and does not move.
+    const REST: Self = Self {
+        mean: Vec3A::ZERO,
+        moving: [Vec3A::ZERO; 4],
+        direction: Vec3A::Y,
+        attach: AxisPoint::ORIGIN,
+        read: RowWeights { rows: [0; 4], weights: [0.0; 4] },
+        parent: NO_PARENT,
+        angle_limit_rad: 1.0,
+    };
+
+    /// Of one beam among those of its tree, without a load.
+    pub fn unloaded(beams: &[BeamDynamics], index: usize) -> Self {
+        let beam = &beams[index];
+        let parent = parent_of(beams, index);
+        Self {
+            direction: Vec3A::from(beam.direction),
+            attach: AxisPoint::new(parent.unwrap_or(beam), beam.attach),
+            parent: if parent.is_some() { beam.parent } else { NO_PARENT },
+            angle_limit_rad: beam.angle_limit_rad.max(LEAST_ANGLE_LIMIT_RAD),
+            ..Self::REST
+        }
+    }
+}
+
+/// A beam with a parent that does not precede it stands on the ground.
+pub(super) fn parent_of(beams: &[BeamDynamics], index: usize) -> Option<&BeamDynamics> {
+    beams[..index].get(beams[index].parent as usize)
+}
 
 /// As many beams as there are lanes, or fewer.
 #[derive(Clone, Debug)]
@@ -116,4 +172,20 @@ fn response(read: &RowWeights, responses: &[Vec4]) -> Vec4 {
     let of_row =
         |index: usize| responses.get(read.rows[index] as usize).copied().unwrap_or(Vec4::ZERO) * read.weights[index];
     (of_row(0) + of_row(1)) + (of_row(2) + of_row(3))
+}
+
+/// `Theta` from `Theta_free`: the same direction, but never beyond the limit.
+#[inline(always)]
+fn saturate<T: Number>(free: Vector<T>, limit_rad: T) -> Vector<T> {
+    let bounded = Vector(free.0.map(|angle| angle.at_most(FREE_ANGLE_BOUND).at_least(-FREE_ANGLE_BOUND)));
+    bounded * (limit_rad / (limit_rad * limit_rad + bounded.length_squared()).sqrt())
+}
+
+/// The bend of a beam that points to `carried` before it, held to that which points it into the wind.
+#[inline(always)]
+pub(super) fn held_to_wind<T: Number>(tip_angle: Vector<T>, carried: Vector<T>, downwind: Vector<T>) -> Vector<T> {
+    let way = (carried - downwind).length_squared().at_least(LEAST_WAY);
+    let share = (tip_angle.length_squared() / way).at_most(MOST_BEND);
+    let fourth = share * share * (share * share);
+    tip_angle * (T::from(1.0) / (T::from(1.0) + fourth).sqrt().sqrt().sqrt())
 }

@@ -1,10 +1,15 @@
 use super::super::bend::mode_shape;
 use super::super::{
-    beam::BeamSway, direction_map::LoadCoefficients, frequency_classes::FrequencyClasses, mean_wind::MeanWind,
-    oracle::cantilever::CantileverMode, oscillator_grid::OscillatorGrid, stand_wind::StandWind,
+    beam::{BeamSway, NO_PARENT},
+    direction_map::LoadCoefficients,
+    frequency_classes::FrequencyClasses,
+    mean_wind::MeanWind,
+    oracle::cantilever::CantileverMode,
+    oscillator_grid::OscillatorGrid,
+    stand_wind::StandWind,
 };
-use super::*;
-use bevy::math::{DVec3, Mat3};
+use super::{beam_group::held_to_wind, *};
+use bevy::math::{DVec3, Quat};
 
 /// A sway that feels the table's wind as it is.
 const fn sway(gain: f32, class: f32) -> BeamSway {

@@ -62,8 +62,7 @@ fn random(ui: &mut Ui, variogram: Option<&GroundVariogram>) {
         Curve { name: "made", points: variogram.measured.clone(), colour: palette.lines[0], is_target: false },
         Curve { name: "model", points: variogram.model.clone(), colour: palette.target, is_target: true },
     ];
-    let form =
-        PlotForm { title: "Made ground and model", axes: AXES, height: height(ui), rises: true, ..PlotForm::default() };
+    let form = PlotForm { title: "Made ground and model", axes: AXES, height: height(ui), ..PlotForm::default() };
     plot(ui, &form, curves);
     ui.add_space(8.0);
     fact(ui, "Sill", &format!("{:.1} m²", variogram.sill_m2), None);
@@ -83,7 +82,7 @@ fn map(ui: &mut Ui, fit: &MapFit, chosen: usize) {
         let points = classes.iter().map(|class| [class.distance_m, model.semivariance_m2(class.lag_m())]).collect();
         curves.push(Curve { name: model.model.name(), points, colour: palette.target, is_target: true });
     }
-    let form = PlotForm { title: "Map and model", axes: AXES, height: height(ui), rises: true, ..PlotForm::default() };
+    let form = PlotForm { title: "Map and model", axes: AXES, height: height(ui), ..PlotForm::default() };
     plot(ui, &form, curves);
     ui.add_space(8.0);
     let grid = fit.map.grid();

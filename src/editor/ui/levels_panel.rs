@@ -118,6 +118,10 @@ pub fn costs_panel(ui: &mut Ui, costs: &Costs) {
 
 /// Names to the left, values to the right.
 fn table(ui: &mut Ui, id: &str, rows: &[(&str, String)]) {
+    if rows.is_empty() {
+        ui.weak("None yet.");
+        return;
+    }
     let width = ui.available_width() - 12.0;
     Grid::new(id).num_columns(2).striped(true).spacing(vec2(8.0, 4.0)).min_row_height(18.0).show(ui, |ui| {
         for (name, value) in rows {

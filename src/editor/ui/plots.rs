@@ -1,7 +1,7 @@
 //! Plots that all look alike.
 
-use bevy_egui::egui::{Color32, Rangef, RichText, TextStyle, Ui, vec2};
-use egui_plot::{AxisHints, Corner, GridInput, GridMark, Legend, Line, LineStyle, Plot, PlotPoints, VLine};
+use bevy_egui::egui::{Color32, Rangef, RichText, Sense, Shape, Stroke, TextStyle, Ui, vec2};
+use egui_plot::{AxisHints, GridInput, GridMark, Line, LineStyle, Plot, PlotPoints, VLine};
 
 use super::theme::palette;
 use crate::editor::spectrum::Band;
@@ -29,14 +29,12 @@ pub struct PlotForm<'a> {
     pub is_logarithmic: bool,
     /// Whether the axis across alone is decades.
     pub has_logarithmic_x: bool,
-    /// Whether curves rise to the right, so that there is room under them.
-    pub rises: bool,
     /// Lines across it: a name and a place.
     pub marks: &'a [(&'static str, f64)],
 }
 
-/// A plot that stands still, with its legend where there is room.
-pub fn still_plot(title: &str, height: f32, legend: Corner) -> Plot<'_> {
+/// A plot that stands still.
+pub fn still_plot(title: &str, height: f32) -> Plot<'_> {
     Plot::new(title)
         .height(height)
         .allow_drag(false)
@@ -45,7 +43,26 @@ pub fn still_plot(title: &str, height: f32, legend: Corner) -> Plot<'_> {
         .allow_boxed_zoom(false)
         .allow_double_click_reset(false)
         .show_crosshair(false)
-        .legend(Legend::default().position(legend).text_style(TextStyle::Small).background_alpha(0.6))
+}
+
+/// What is drawn how: above a plot, where it covers no curve.
+pub fn legend<'a>(ui: &mut Ui, entries: impl IntoIterator<Item = (&'a str, Color32, bool)>) {
+    const LINE: f32 = 16.0;
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        for (name, colour, is_dashed) in entries {
+            let (line, _) = ui.allocate_exact_size(vec2(LINE, ui.text_style_height(&TextStyle::Small)), Sense::hover());
+            let stroke = Stroke::new(2.0, colour);
+            let ends = [line.left_center(), line.right_center()];
+            if is_dashed {
+                ui.painter().extend(Shape::dashed_line(&ends, stroke, 0.25 * LINE, 0.125 * LINE));
+            } else {
+                ui.painter().line_segment(ends, stroke);
+            }
+            ui.small(name);
+            ui.add_space(6.0);
+        }
+    });
 }
 
 /// Draws a plot.
@@ -56,13 +73,9 @@ pub fn plot(ui: &mut Ui, form: &PlotForm, curves: Vec<Curve>) {
         ui.weak(format!("{} over {}", form.axes[1], form.axes[0]));
     });
     let [is_log_x, is_log_y] = [form.is_logarithmic || form.has_logarithmic_x, form.is_logarithmic];
-    // Spectra and coherences fall: there is room under them.
-    let corner = match (is_log_x, form.rises) {
-        (true, _) => Corner::LeftBottom,
-        (false, true) => Corner::RightBottom,
-        (false, false) => Corner::RightTop,
-    };
-    let mut plot = still_plot(form.title, form.height, corner)
+    let marks = form.marks.iter().map(|(name, _)| (*name, target, true));
+    legend(ui, curves.iter().map(|curve| (curve.name, curve.colour, curve.is_target)).chain(marks));
+    let mut plot = still_plot(form.title, form.height)
         .set_margin_fraction(vec2(0.01, 0.06))
         .custom_x_axes(vec![AxisHints::new_x().label_spacing(LABEL_SPACING)]);
     if is_log_x {

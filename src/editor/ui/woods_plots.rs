@@ -1,9 +1,13 @@
 //! What a wood is like: the counts of the chosen area's quadrats beside its law.
 
 use bevy_egui::egui::{RichText, Ui, vec2};
-use egui_plot::{Bar, BarChart, Corner, PlotPoints, Points};
+use egui_plot::{Bar, BarChart, PlotPoints, Points};
 
-use super::{plots::still_plot, theme::palette, value_rows::fact};
+use super::{
+    plots::{legend, still_plot},
+    theme::palette,
+    value_rows::fact,
+};
 use crate::editor::quadrat_histogram::QuadratHistogram;
 
 /// What is known of a wood.
@@ -57,13 +61,11 @@ fn bars(ui: &mut Ui, histogram: &QuadratHistogram) {
     let bars = counted.map(|(count, quadrats)| Bar::new(count as f64, share(*quadrats as f64)).width(0.8)).collect();
     let law = histogram.expected.iter().enumerate().map(|(count, quadrats)| [count as f64, share(*quadrats)]);
     let height = (ui.available_height() - 260.0).clamp(140.0, 360.0);
-    still_plot("quadrats", height, Corner::RightTop).include_y(0.0).set_margin_fraction(vec2(0.02, 0.06)).show(
-        ui,
-        |plot| {
-            plot.bar_chart(BarChart::new("planted", bars).color(palette.lines[0]));
-            plot.points(Points::new("law", PlotPoints::from_iter(law)).color(palette.lines[1]).radius(4.0));
-        },
-    );
+    legend(ui, [("planted", palette.lines[0], false), ("law", palette.lines[1], false)]);
+    still_plot("quadrats", height).include_y(0.0).set_margin_fraction(vec2(0.02, 0.06)).show(ui, |plot| {
+        plot.bar_chart(BarChart::new("planted", bars).color(palette.lines[0]));
+        plot.points(Points::new("law", PlotPoints::from_iter(law)).color(palette.lines[1]).radius(4.0));
+    });
 }
 
 fn numbers(ui: &mut Ui, histogram: &QuadratHistogram) {

@@ -2,7 +2,10 @@
 
 use super::{OAK, WIND, glb_reader::Reader};
 use crate::{
-    dynamics::pose::{BeamPose, TreeInWind, TreePoser},
+    dynamics::{
+        beam_pose::BeamPose,
+        pose::{TreeInWind, TreePoser},
+    },
     export::{ExportSettings, MotionSettings, tree_glb},
 };
 use bevy::math::{Mat4, Vec3};

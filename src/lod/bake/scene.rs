@@ -12,7 +12,7 @@ use super::{
     texture_lookup::{LinearMip, Opacity, interpolated, interpolated_vector},
 };
 use crate::{
-    dynamics::pose::BeamPose,
+    dynamics::beam_pose::BeamPose,
     tree::{
         Species, TreeModel,
         species::Wood,

@@ -9,8 +9,9 @@ use bevy::math::Vec3;
 use crate::{
     dynamics::{
         beam::{BeamDynamics, BeamSway},
+        beam_pose::BeamPose,
         bend::SLOPE_TIP,
-        pose::{BeamPose, TIP_ANGLE_LIMIT, TreePoser},
+        pose::{TIP_ANGLE_LIMIT, TreePoser},
     },
     lod::{bake::scene::Scene, reference_wind::MEAN_SPEED_M_S},
     tree::{LeafSeason, TreeModel},

@@ -12,11 +12,7 @@ use std::f32::consts::{SQRT_2, TAU};
 
 use super::main_stem::MainStem;
 use crate::{
-    dynamics::{
-        beam::BeamDynamics,
-        bend::SLOPE_TIP,
-        pose::{BeamPose, TreePoser},
-    },
+    dynamics::{beam::BeamDynamics, beam_pose::BeamPose, bend::SLOPE_TIP, pose::TreePoser},
     lod::reference_wind::{MEAN_SPEED_M_S, TURBULENCE_INTENSITY},
     sequence::r2,
     tree::{TreeModel, skeleton::Skeleton},

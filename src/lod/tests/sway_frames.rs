@@ -2,7 +2,7 @@
 
 use super::{grown, ray_oracles::RayCaster, small};
 use crate::{
-    dynamics::pose::BeamPose,
+    dynamics::beam_pose::BeamPose,
     lod::{
         EnvelopeLevel, EnvelopeSettings, Scene,
         bake::{

@@ -1,7 +1,7 @@
 //! Rays against trees, as they are posed in the wind.
 
 use crate::{
-    dynamics::pose::{BeamPose, TreeInWind},
+    dynamics::{beam_pose::BeamPose, pose::TreeInWind},
     query::passage::{LocalRay, Passed, depth_until},
     sway::{ActiveSway, InCanopy, TreePose, WeightedResponse, uniform_scale, world_from_local},
     tree::{

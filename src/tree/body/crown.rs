@@ -14,7 +14,7 @@ use super::{
     stems::{StemPlace, stem_places},
 };
 use crate::{
-    dynamics::pose::BeamPose,
+    dynamics::beam_pose::BeamPose,
     tree::{
         foliage::Foliage, generator::Growth, leaf::LeafKind, leaf::card_cover, skeleton::Skeleton, species::Species,
         vertices::LeafVertices,

@@ -4,7 +4,7 @@ use super::{ray::BodyRay, round_cone::RoundCone};
 use crate::{
     dynamics::{
         beam::{BeamDynamics, NO_PARENT},
-        pose::BeamPose,
+        beam_pose::BeamPose,
     },
     tree::skeleton::SkeletonBeam,
 };

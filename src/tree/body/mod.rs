@@ -24,7 +24,8 @@ pub use round_cone::RoundCone;
 use super::{skeleton::Skeleton, species::Species, vertices::LeafVertices};
 use crate::dynamics::{
     beam::BeamDynamics,
-    pose::{BeamPose, TreeInWind, TreePoser},
+    beam_pose::BeamPose,
+    pose::{TreeInWind, TreePoser},
 };
 use bevy::math::Vec3;
 
