@@ -48,9 +48,15 @@ pub fn still_plot(title: &str, height: f32) -> Plot<'_> {
 /// What is drawn how: above a plot, where it covers no curve.
 pub fn legend<'a>(ui: &mut Ui, entries: impl IntoIterator<Item = (&'a str, Color32, bool)>) {
     const LINE: f32 = 16.0;
+    let mut told = Vec::new();
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        for (name, colour, is_dashed) in entries {
+        for entry @ (name, colour, is_dashed) in entries {
+            // Several curves may have targets.
+            if told.contains(&entry) {
+                continue;
+            }
+            told.push(entry);
             let (line, _) = ui.allocate_exact_size(vec2(LINE, ui.text_style_height(&TextStyle::Small)), Sense::hover());
             let stroke = Stroke::new(2.0, colour);
             let ends = [line.left_center(), line.right_center()];

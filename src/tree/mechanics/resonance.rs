@@ -92,15 +92,15 @@ fn lowest_hz(branches: &[LoadedBranch], responses: &[BranchResponse]) -> f64 {
     if slowest_hz.is_finite() { LOWEST_SHARE * slowest_hz } else { 1.0 }
 }
 
-/// Where gusts move a branch most, by the lowest frequency.
+/// Where gusts move a branch most, by the lowest frequency; none where that is beyond the frequencies that are tried.
 fn peak(lags: &[f32]) -> Option<f64> {
     let motion = |index: usize| f64::from(lags[index]) * ratio(GUSTS * index as f64);
     let is_highest = |&index: &usize| motion(index) >= motion(index - 1) && motion(index) > motion(index + 1);
     let modes = (1..lags.len() - 1).filter(is_highest).map(|index| mode_near(lags, index));
-    modes
-        .filter(|mode| mode.motion > 0.0 && mode.motion.is_finite())
-        .max_by(|a, b| a.motion.total_cmp(&b.motion))
-        .map(|mode| mode.frequency)
+    let modes = modes.filter(|mode| mode.motion > 0.0 && mode.motion.is_finite());
+    let strongest = modes.max_by(|a, b| a.motion.total_cmp(&b.motion))?;
+    let at_ends = motion(0).max(motion(lags.len() - 1));
+    (strongest.motion >= at_ends).then_some(strongest.frequency)
 }
 
 struct Mode {
@@ -285,5 +285,7 @@ mod tests {
         }
         assert!(peak(&lags(&[(2.0, 0.3), (3.0, 0.7)])).unwrap() > 2.9, "the stronger one");
         assert_eq!(peak(&[0.0; 4 * FOURS]), None);
+        let beyond = ratio((4 * FOURS) as f64 + 2.0);
+        assert_eq!(peak(&lags(&[(2.0, 0.02), (beyond, 0.98)])), None, "a weak one is not taken for what is beyond");
     }
 }
