@@ -26,8 +26,8 @@ const OAK: &str = include_str!("../../assets/species/oak.species.ron");
 const TRUNK_M: [f32; 2] = [0.2, 1.7];
 /// Logs in the fire are charred: so much darker than bark.
 const CHARRED: f32 = 0.16;
-/// Stones are rounded by so much of their radius, with lumps of about that radius.
-const ROUGHNESS: f64 = 0.28;
+/// Height of the lumps of a stone by its radius.
+const LUMPS: f64 = 0.28;
 
 /// Spawns all of it.
 pub fn spawn_fireplace(
@@ -39,8 +39,21 @@ pub fn spawn_fireplace(
 ) {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
     let bark = bark_material(images, seed);
-    let charred =
-        materials.add(StandardMaterial { base_color: Color::linear_rgb(CHARRED, CHARRED, CHARRED), ..bark.clone() });
+    let charred = StandardMaterial { base_color: Color::linear_rgb(CHARRED, CHARRED, CHARRED), ..bark.clone() };
+    spawn_logs(commands, meshes, materials.add(charred), &mut random);
+    let stones = [0, 1, 2, 3].map(|kind| meshes.add(stone_mesh(0.13, seed as u32 + kind)));
+    spawn_stones(commands, &stones, materials.add(matt(Color::srgb(0.36, 0.35, 0.34))), &mut random);
+    let wood = matt(Color::srgb(0.55, 0.43, 0.29));
+    spawn_trunks(commands, meshes, [bark, wood].map(|material| materials.add(material)));
+}
+
+/// Spawns logs that lean together.
+fn spawn_logs(
+    commands: &mut Commands,
+    meshes: &mut Assets<Mesh>,
+    charred: Handle<StandardMaterial>,
+    random: &mut impl RngExt,
+) {
     let log = meshes.add(barked(0.055, 0.75));
     for number in 0..6 {
         let turn = TAU * (number as f32 + random.random_range(-0.25..0.25)) / 6.0;
@@ -54,22 +67,32 @@ pub fn spawn_fireplace(
             NotShadowCaster,
         ));
     }
-    let stone = materials.add(matt(Color::srgb(0.36, 0.35, 0.34)));
-    let stones: Vec<Handle<Mesh>> = (0..4).map(|kind| meshes.add(stone_mesh(0.13, seed as u32 + kind))).collect();
-    for number in 0..15 {
+}
+
+/// Spawns a ring of stones of some shapes, one after another.
+fn spawn_stones(
+    commands: &mut Commands,
+    shapes: &[Handle<Mesh>],
+    stone: Handle<StandardMaterial>,
+    random: &mut impl RngExt,
+) {
+    for (number, shape) in shapes.iter().cycle().take(15).enumerate() {
         let turn = TAU * (number as f32 + random.random_range(-0.2..0.2)) / 15.0;
         let place = Vec3::new(turn.cos(), 0.0, turn.sin()) * 0.68 + Vec3::Y * 0.04;
         let size = Vec3::new(random.random_range(0.75..1.2), random.random_range(0.6..0.9), 1.05);
         let turned = Quat::from_rotation_y(random.random_range(0.0..TAU));
         commands.spawn((
-            Mesh3d(stones[number % stones.len()].clone()),
+            Mesh3d(shape.clone()),
             MeshMaterial3d(stone.clone()),
             Transform::from_translation(place).with_rotation(turned).with_scale(size),
         ));
     }
+}
+
+/// Spawns two trunks to sit on, with sawn ends.
+fn spawn_trunks(commands: &mut Commands, meshes: &mut Assets<Mesh>, [bark, wood]: [Handle<StandardMaterial>; 2]) {
     let [radius_m, length_m] = TRUNK_M;
-    let (trunk, bark) = (meshes.add(barked(radius_m, length_m)), materials.add(bark));
-    let (end, wood) = (meshes.add(Circle::new(radius_m)), materials.add(matt(Color::srgb(0.55, 0.43, 0.29))));
+    let (trunk, end) = (meshes.add(barked(radius_m, length_m)), meshes.add(Circle::new(radius_m)));
     for (place, turn) in [(Vec2::new(-1.75, -0.35), 1.35), (Vec2::new(1.5, -1.35), -0.75)] {
         let lying = Quat::from_rotation_y(turn) * Quat::from_rotation_z(FRAC_PI_2);
         let at = Vec3::new(place.x, ground::height_m(place) + 0.16, place.y);
@@ -132,7 +155,7 @@ fn stone_mesh(radius_m: f32, seed: u32) -> Mesh {
         for place in places {
             let out = (Vec3::from_array(*place) / radius_m).as_dvec3();
             let lump = lumps.get((1.3 * out).to_array()) + 0.35 * lumps.get((3.5 * out).to_array());
-            *place = (radius_m * (out * (1.0 + ROUGHNESS * lump)).as_vec3()).to_array();
+            *place = (radius_m * (out * (1.0 + LUMPS * lump)).as_vec3()).to_array();
         }
     }
     mesh.with_computed_smooth_normals()

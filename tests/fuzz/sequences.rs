@@ -302,7 +302,7 @@ fn a_game_may_do_anything_in_any_order() {
 }
 
 #[test]
-#[ignore = "a long run: half an hour"]
+#[ignore = "a long run: ten minutes"]
 fn a_game_may_do_anything_in_any_order_for_long() {
     play(MANY);
 }

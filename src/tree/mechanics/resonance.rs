@@ -44,8 +44,9 @@ const DAMPING_RATIO: f32 = 0.12;
 const LOWEST_SHARE: f64 = 0.6;
 const STEP: f64 = 0.17;
 const FOURS: usize = 4;
+const FREQUENCIES: usize = 4 * FOURS;
 /// Amplitude of gusts as a power of their frequency.
-const GUSTS: f64 = -1.0 / 3.0;
+const GUST_EXPONENT: f64 = -1.0 / 3.0;
 /// Where on a branch its motion is taken, as a share of its length.
 const SENSOR: f64 = 2.0 / 3.0;
 
@@ -53,7 +54,7 @@ const SENSOR: f64 = 2.0 / 3.0;
 pub(super) fn resonances_hz(branches: &[LoadedBranch], responses: &[BranchResponse]) -> Vec<Option<f64>> {
     let bodies = Bodies::new(branches);
     let lowest_hz = lowest_hz(branches, responses);
-    let mut lags: Vec<[f32; 4 * FOURS]> = vec![[0.0; 4 * FOURS]; branches.len()];
+    let mut lags: Vec<[f32; FREQUENCIES]> = vec![[0.0; FREQUENCIES]; branches.len()];
     let mut articulated = vec![Articulated::default(); branches.len()];
     for four in 0..FOURS {
         let z = stiffness_ratio(lowest_hz, four);
@@ -93,13 +94,18 @@ fn lowest_hz(branches: &[LoadedBranch], responses: &[BranchResponse]) -> f64 {
 }
 
 /// Where gusts move a branch most, by the lowest frequency; none where that is beyond the frequencies that are tried.
-fn peak(lags: &[f32]) -> Option<f64> {
-    let motion = |index: usize| f64::from(lags[index]) * ratio(GUSTS * index as f64);
-    let is_highest = |&index: &usize| motion(index) >= motion(index - 1) && motion(index) > motion(index + 1);
-    let modes = (1..lags.len() - 1).filter(is_highest).map(|index| mode_near(lags, index));
+fn peak(lags: &[f32; FREQUENCIES]) -> Option<f64> {
+    let (mut gust, weaker) = (1.0, ratio(GUST_EXPONENT));
+    let motions = lags.map(|lag| {
+        let motion = f64::from(lag) * gust;
+        gust *= weaker;
+        motion
+    });
+    let is_highest = |&index: &usize| motions[index] >= motions[index - 1] && motions[index] > motions[index + 1];
+    let modes = (1..FREQUENCIES - 1).filter(is_highest).map(|index| mode_near(lags, index));
     let modes = modes.filter(|mode| mode.motion > 0.0 && mode.motion.is_finite());
     let strongest = modes.max_by(|a, b| a.motion.total_cmp(&b.motion))?;
-    let at_ends = motion(0).max(motion(lags.len() - 1));
+    let at_ends = motions[0].max(motions[FREQUENCIES - 1]);
     (strongest.motion >= at_ends).then_some(strongest.frequency)
 }
 
@@ -112,7 +118,7 @@ struct Mode {
 
 /// The mode of which these lags are, at a sample and its neighbours. That of one mode is `c f / ((f_n^2 - f^2)^2 + (2 zeta f_n f)^2)`,
 /// so that `f` over it is a polynomial of the second degree in `f^2`: three samples tell all of it.
-fn mode_near(lags: &[f32], index: usize) -> Mode {
+fn mode_near(lags: &[f32; FREQUENCIES], index: usize) -> Mode {
     let x: [f64; 3] = std::array::from_fn(|k| ratio((index + k - 1) as f64).powi(2));
     let y: [f64; 3] = std::array::from_fn(|k| x[k].sqrt() / f64::from(lags[index + k - 1]));
     let slopes = [(y[1] - y[0]) / (x[1] - x[0]), (y[2] - y[1]) / (x[2] - x[1])];
@@ -123,7 +129,7 @@ fn mode_near(lags: &[f32], index: usize) -> Mode {
     let square = if curvature > 0.0 { natural.clamp(x[0], x[2]) } else { x[1] };
     let there = y[0] + (slopes[0] + curvature * (square - x[1])) * (square - x[0]);
     let frequency = square.sqrt();
-    Mode { frequency, motion: frequency / there * frequency.powf(GUSTS) }
+    Mode { frequency, motion: frequency / there * frequency.powf(GUST_EXPONENT) }
 }
 
 /// A branch's place where it grows, its pieces and its sensor.
@@ -257,7 +263,7 @@ mod tests {
     use super::*;
 
     /// Lags of modes of these frequencies (by the lowest that is tried) and shares.
-    fn lags(modes: &[(f64, f64)]) -> Vec<f32> {
+    fn lags(modes: &[(f64, f64)]) -> [f32; FREQUENCIES] {
         let lag = |frequency: f64| -> f64 {
             let of_mode = |&(natural, share): &(f64, f64)| {
                 let r = frequency / natural;
@@ -266,7 +272,7 @@ mod tests {
             };
             modes.iter().map(of_mode).sum()
         };
-        (0..4 * FOURS).map(|index| lag(ratio(index as f64)) as f32).collect()
+        std::array::from_fn(|index| lag(ratio(index as f64)) as f32)
     }
 
     #[test]
@@ -284,8 +290,8 @@ mod tests {
             assert!((found / 2.0 - 1.0).abs() < 0.03, "{found}");
         }
         assert!(peak(&lags(&[(2.0, 0.3), (3.0, 0.7)])).unwrap() > 2.9, "the stronger one");
-        assert_eq!(peak(&[0.0; 4 * FOURS]), None);
-        let beyond = ratio((4 * FOURS) as f64 + 2.0);
+        assert_eq!(peak(&[0.0; FREQUENCIES]), None);
+        let beyond = ratio(FREQUENCIES as f64 + 2.0);
         assert_eq!(peak(&lags(&[(2.0, 0.02), (beyond, 0.98)])), None, "a weak one is not taken for what is beyond");
     }
 }
