@@ -33,6 +33,9 @@ pub struct BeamDynamics {
     /// Angle that its tip approaches in an ever stronger wind, in radians: [`TIP_ANGLE_LIMIT`](super::TIP_ANGLE_LIMIT) for a
     /// branch of one beam; beams that continue one another share it, by how far they bend.
     pub angle_limit_rad: f32,
+    /// Direction across the beam in which it bends less in a level wind, in the tree's coordinates; its length is the square root of the
+    /// share by which it does (0: alike in all directions, 1: not at all in this one). Crooked branches move askew of the wind by it.
+    pub stiff_axis: Vec3,
     /// Turn of its tip under a moment that bends it along its whole length, of a stem with its roots, rad/(N m).
     pub compliance_rad_n_m: f32,
     /// While the tree is in leaf.
@@ -42,6 +45,12 @@ pub struct BeamDynamics {
 }
 
 impl BeamDynamics {
+    /// The load that bends a beam without a stiff axis as this one bends the beam.
+    #[must_use]
+    pub fn effective_load(&self, load: Vec3) -> Vec3 {
+        load - self.stiff_axis * self.stiff_axis.dot(load)
+    }
+
     /// How it sways with that share of its leaves, 0 to 1.
     #[must_use]
     pub fn sway(&self, leaf_share: f32) -> BeamSway {

@@ -45,7 +45,7 @@ pub(crate) mod response;
 pub(crate) mod stand_wind;
 pub(crate) mod table_place;
 #[cfg(test)]
-mod test_beams;
+pub(crate) mod test_beams;
 
 pub use admittance::{admittance, equivalent_size_m};
 pub use beam::{BeamAnswer, BeamDynamics, BeamSway, BeamWind, DRAG_SPEED_M_S, NO_PARENT};

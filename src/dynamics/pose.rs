@@ -2,7 +2,8 @@
 //!
 //! Beam: base `b`, unit direction `d`, length `L`, all at rest and in the tree's own coordinates; `s` runs from 0 at its
 //! root to 1 at its tip. The load `q`, a vector across `d`, moves the tip by `a = g q` lengths (`g` the beam's gain), and
-//! turns it by `Theta = phi_1'(1) a`. In a storm a linear law would roll the beam up, so the angle saturates:
+//! turns it by `Theta = phi_1'(1) a`; along a stiff axis, that of crooked branches, it does so less
+//! ([`BeamDynamics::stiff_axis`]). In a storm a linear law would roll the beam up, so the angle saturates:
 //!
 //! ```text
 //! Theta = Theta_free / sqrt(1 + |Theta_free|^2 / limit^2)
@@ -85,7 +86,7 @@ impl TreePoser {
             let coefficients = tree.map.coefficients(tree.to_wind * beam.direction);
             let answer = beam.sway(tree.leaf_share).answer(&tree.wind, tree.scale);
             let free_angle = |load: Vec3, gain: f32| {
-                let angle = SLOPE_TIP * gain * (tree.to_wind.transpose() * load);
+                let angle = SLOPE_TIP * gain * beam.effective_load(tree.to_wind.transpose() * load);
                 Vec3A::from(if angle.is_finite() { angle } else { Vec3::ZERO })
             };
             PreparedBeam {

@@ -1,4 +1,4 @@
-//! Beams and winds that tests of this room share.
+//! Beams and winds that tests share.
 
 use super::{
     beam::{BeamDynamics, BeamSway, BeamWind, NO_PARENT},
@@ -11,7 +11,7 @@ use crate::wind::LogProfile;
 use bevy::math::Vec3;
 
 /// An oak's trunk in leaf.
-pub(super) const OAK: BeamSway = BeamSway {
+pub(crate) const OAK: BeamSway = BeamSway {
     gain: 1e-3,
     class: 8.0,
     averaging_speed_m_s: 0.9,
@@ -21,15 +21,16 @@ pub(super) const OAK: BeamSway = BeamSway {
 };
 
 /// A wind over open country of that speed at 10 m.
-pub(super) fn wind(speed_m_s: f32) -> BeamWind {
+pub(crate) fn wind(speed_m_s: f32) -> BeamWind {
     let mean = MeanWind::new(&LogProfile::from_reference(speed_m_s, 0.1, 0.0), 10.0);
     let grid = OscillatorGrid::new(FrequencyClasses::default(), 0.05, speed_m_s, 10.0);
     BeamWind { stand: StandWind::open(mean), grid }
 }
 
 /// An upright beam on the ground that sways alike in leaf and bare.
-pub(super) fn upright(sway: BeamSway, length_m: f32) -> BeamDynamics {
+pub(crate) fn upright(sway: BeamSway, length_m: f32) -> BeamDynamics {
     BeamDynamics {
+        stiff_axis: Vec3::ZERO,
         base: Vec3::ZERO,
         length_m,
         direction: Vec3::Y,

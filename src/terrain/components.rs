@@ -139,7 +139,7 @@ impl Default for GroundLook {
         Self {
             grass: [0.29, 0.36, 0.18],
             dry_grass: [0.39, 0.39, 0.24],
-            earth: [0.33, 0.29, 0.23],
+            earth: [0.30, 0.28, 0.215],
             rock: [0.44, 0.43, 0.42],
             snow: [0.93, 0.95, 0.98],
             litter: [0.26, 0.225, 0.175],

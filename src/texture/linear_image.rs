@@ -2,12 +2,16 @@
 //!
 //! Colours are averaged as light (linear), not as sRGB. In a mask's mips plain averaging thins the leaves with
 //! distance, for the cut-off keeps only what is more than half covered. Each mip's alpha is therefore scaled until
-//! as many of its texels pass the cut-off as in the first (Castaño, "Computing alpha mipmaps", 2010).
+//! as much of it passes the cut-off as of the first (Castaño, "Computing alpha mipmaps", 2010): between texels, too, where few that pass
+//! by themselves are interpolated with many that do not.
 
 use super::{
     encoding::{HALF_A_STEP, colour_bytes, linear_bytes, normal_bytes},
     texture_data::{MASK_CUT_OFF, Texels, TextureData},
 };
+
+/// Places each way in a texel at which a mask is looked at.
+const PLACES_A_TEXEL: usize = 3;
 
 /// An image in linear floats, before it is a texture.
 #[derive(Clone, Debug)]
@@ -50,20 +54,46 @@ impl LinearImage {
         [sum[0] / weights, sum[1] / weights, sum[2] / weights, sum[3]]
     }
 
-    /// Share of texels that pass the cut-off.
-    fn coverage(&self) -> f32 {
-        let drawn = self.texels.iter().filter(|texel| texel[3] > MASK_CUT_OFF).count();
-        drawn as f32 / self.texels.len() as f32
+    /// Share of the image that passes the cut-off, between texels as well.
+    pub(crate) fn coverage(&self) -> f32 {
+        let alphas = self.interpolated_alphas();
+        alphas.iter().filter(|alpha| **alpha > MASK_CUT_OFF).count() as f32 / alphas.len() as f32
     }
 
-    /// Scales alpha so that the given share of texels passes the cut-off: the faintest of them lands just on it.
+    /// Scales alpha so that the given share passes the cut-off, between texels as well. What is cut off at one lowers what is between, so
+    /// that is done twice.
     fn scale_alpha_to(&mut self, coverage: f32) {
-        let mut alphas: Vec<f32> = self.texels.iter().map(|texel| texel[3]).collect();
-        let drawn = (coverage * alphas.len() as f32).round() as usize;
-        let Some(last) = drawn.checked_sub(1) else { return };
-        let (_, &mut faintest, _) = alphas.select_nth_unstable_by(last, |a, b| b.total_cmp(a));
-        let scale = (MASK_CUT_OFF + HALF_A_STEP) / faintest.max(1e-3);
-        self.texels.iter_mut().for_each(|texel| texel[3] = (texel[3] * scale).min(1.0));
+        for _ in 0..2 {
+            let mut alphas = self.interpolated_alphas();
+            let drawn = (coverage * alphas.len() as f32).round() as usize;
+            let Some(last) = drawn.checked_sub(1) else { return };
+            let (_, &mut faintest, _) = alphas.select_nth_unstable_by(last, |a, b| b.total_cmp(a));
+            let scale = (MASK_CUT_OFF + HALF_A_STEP) / faintest.max(1e-3);
+            self.texels.iter_mut().for_each(|texel| texel[3] = (texel[3] * scale).min(1.0));
+        }
+    }
+
+    /// Alpha at evenly spaced places, as it is seen: interpolated between the nearest four texels, with that of the rim beyond it.
+    fn interpolated_alphas(&self) -> Vec<f32> {
+        let places = |across: usize| {
+            (0..across * PLACES_A_TEXEL).map(move |place| {
+                let at = ((place as f32 + 0.5) / PLACES_A_TEXEL as f32 - 0.5).clamp(0.0, across as f32 - 1.0);
+                let low = at as usize;
+                (low, (low + 1).min(across - 1), at - low as f32)
+            })
+        };
+        let mut alphas = Vec::with_capacity(self.texels.len() * PLACES_A_TEXEL * PLACES_A_TEXEL);
+        for (low_y, high_y, share_y) in places(self.height) {
+            let alpha = |x: usize| {
+                let [low, high] = [low_y, high_y].map(|y| self.texels[y * self.width + x][3]);
+                low + (high - low) * share_y
+            };
+            alphas.extend(places(self.width).map(|(low_x, high_x, share_x)| {
+                let [low, high] = [low_x, high_x].map(alpha);
+                low + (high - low) * share_x
+            }));
+        }
+        alphas
     }
 
     /// Half the size, for what was drawn at twice the resolution; colour comes from what is covered.
@@ -78,13 +108,18 @@ impl LinearImage {
 
     /// Colours with a mask whose coverage stays the same in every mip.
     pub(crate) fn into_mask_texture(self) -> TextureData {
-        let coverage = self.coverage();
+        Self::mask_texture(vec![self])
+    }
+
+    /// The same, of which the first mips are drawn, each of half the size of the one before.
+    pub(crate) fn mask_texture(drawn: Vec<Self>) -> TextureData {
+        let coverage = drawn.first().map_or(0.0, Self::coverage);
         let shrink = |image: &Self| {
             let mut half = image.downsampled();
             half.scale_alpha_to(coverage);
             half
         };
-        self.into_texture(shrink, colour_bytes, Texels::Colour)
+        Self::texture(drawn, shrink, colour_bytes, Texels::Colour)
     }
 
     /// Measures that are no colours, each channel averaged by itself.
@@ -103,16 +138,21 @@ impl LinearImage {
         bytes: fn(&[f32; 4]) -> [u8; 4],
         texels: Texels,
     ) -> TextureData {
-        let (width, height) = (self.width as u32, self.height as u32);
-        let mut mips = Vec::new();
-        let mut image = self;
-        loop {
-            mips.push(image.texels.iter().flat_map(bytes).collect());
-            if image.width * image.height <= 1 {
-                break;
-            }
-            image = shrink(&image);
+        Self::texture(vec![self], shrink, bytes, texels)
+    }
+
+    /// The texture of its first mips, one at least; the others are shrunk from the last of these.
+    fn texture(
+        mut drawn: Vec<Self>,
+        shrink: impl Fn(&Self) -> Self,
+        bytes: fn(&[f32; 4]) -> [u8; 4],
+        texels: Texels,
+    ) -> TextureData {
+        while let Some(last) = drawn.last().filter(|last| last.width * last.height > 1) {
+            drawn.push(shrink(last));
         }
+        let [width, height] = drawn.first().map_or([0; 2], |first| [first.width as u32, first.height as u32]);
+        let mips = drawn.iter().map(|image| image.texels.iter().flat_map(bytes).collect()).collect();
         TextureData { width, height, mips, texels }
     }
 }
@@ -120,6 +160,7 @@ impl LinearImage {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::texture::test_masks::drawn_share;
 
     /// Discs of many sizes on a clear ground: a mask that thins fast when it is merely averaged.
     fn spots() -> LinearImage {
@@ -131,11 +172,6 @@ mod tests {
             image.texels[index][3] = (radius - x.hypot(y) + 0.5).clamp(0.0, 1.0);
         }
         image
-    }
-
-    fn drawn_share(mip: &[u8]) -> f32 {
-        let drawn = mip.chunks_exact(4).filter(|texel| f32::from(texel[3]) / 255.0 > MASK_CUT_OFF).count();
-        drawn as f32 / (mip.len() / 4) as f32
     }
 
     #[test]
@@ -179,10 +215,11 @@ mod tests {
     #[test]
     fn masks_keep_their_coverage_in_every_mip() {
         let texture = spots().into_mask_texture();
-        let full = drawn_share(&texture.mips[0]);
-        // The smallest mip here has 16 x 16 texels, of which one is 0.4%; texels of equal alpha pass together.
-        for mip in &texture.mips[1..5] {
-            assert!((drawn_share(mip) - full).abs() < 0.02, "{} against {full}", drawn_share(mip));
+        let full = drawn_share(&texture, 0);
+        // The smallest mip here has 8 x 8 texels.
+        for mip in 1..6 {
+            let share = drawn_share(&texture, mip);
+            assert!((share - full).abs() < 0.02, "{share} against {full}");
         }
     }
 }

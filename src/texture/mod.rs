@@ -5,6 +5,8 @@ mod blur;
 mod encoding;
 pub mod fourier;
 mod linear_image;
+#[cfg(test)]
+pub(crate) mod test_masks;
 mod texture_data;
 
 pub(crate) use blur::blurred;

@@ -17,6 +17,7 @@ pub struct LiveBeam {
     /// How far what bends it is spread about there, as a standard deviation in each direction, m.
     pub spread_m: f32,
     direction: Vec3,
+    stiff_axis: Vec3,
     /// Free tip angle by pressure, rad s^2/m^2.
     gain: f32,
     drag_exponent: f32,
@@ -42,6 +43,7 @@ impl LiveBeam {
             load_at: along.with_y(finite(sway.load_height_m)),
             spread_m: finite(sway.averaging_speed_m_s / own_hz).max(0.0),
             direction: beam.direction,
+            stiff_axis: beam.stiff_axis,
             gain: finite(SLOPE_TIP * sway.gain),
             drag_exponent: finite(sway.drag_exponent).clamp(-1.0, 0.0),
             class: grid.classes.nearest(sway.class + grid.classes.shift(scale)).min(oscillating),
@@ -59,7 +61,10 @@ impl LiveBeam {
         let pressure = |velocity: Vec3| {
             cross_flow_pressure(velocity, self.direction) * drag_share(velocity.length(), self.drag_exponent)
         };
-        let angle = self.gain * (pressure(wind + source) - pressure(wind));
+        let load = pressure(wind + source) - pressure(wind);
+        // The stiff axis is that of level winds: what blows down on a branch bends it down.
+        let level = 1.0 - (source.y / source.length()).powi(2);
+        let angle = self.gain * (load - self.stiff_axis * (self.stiff_axis.dot(load) * level));
         if angle.is_finite() { angle.into() } else { Vec3A::ZERO }
     }
 }

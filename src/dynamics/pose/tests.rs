@@ -28,6 +28,7 @@ fn poser(beams: &[BeamDynamics], map: &DirectionMap, to_wind: Mat3, scale: f32) 
 }
 
 const BEAM: BeamDynamics = BeamDynamics {
+    stiff_axis: Vec3::ZERO,
     base: Vec3::new(0.5, 1.0, -2.0),
     length_m: 3.0,
     direction: Vec3::new(0.36, 0.8, 0.48),
@@ -58,6 +59,7 @@ fn hierarchy() -> [BeamDynamics; 3] {
         parent: 1,
         angle_limit_rad: TIP_ANGLE_LIMIT,
         compliance_rad_n_m: 1e-3,
+        stiff_axis: Vec3::ZERO,
         in_leaf: sway(0.02, 20.0),
         bare: sway(0.02, 20.0),
     };
@@ -188,6 +190,22 @@ fn deflection_grows_with_the_wind_and_saturates() {
     // A light wind: the deflection by length is gain times load across the beam.
     let across = (Vec3::X - BEAM.direction.x * BEAM.direction).length();
     assert!((angles[0] / (SLOPE_TIP * BEAM.in_leaf.gain * 0.01 * across) - 1.0).abs() < 1e-2);
+}
+
+/// Half as far along the stiff axis, and as far across it.
+#[test]
+fn a_beam_bends_less_along_its_stiff_axis() {
+    // At 45 degrees from the wind.
+    let to_wind = Vec3::X.reject_from(BEAM.direction).normalize();
+    let beside = BEAM.direction.cross(to_wind);
+    let (along, across) = ((to_wind + beside).normalize(), (to_wind - beside).normalize());
+    let skew = BeamDynamics { stiff_axis: along * 0.5_f32.sqrt(), ..BEAM };
+    let load = 2.0 * along + 3.0 * across;
+    assert!(skew.effective_load(load).distance(along + 3.0 * across) < 1e-5);
+    assert_eq!(BEAM.effective_load(load), load);
+    let [even, skew] = [BEAM, skew].map(|beam| Vec3::from(posed(&[beam], 0.01)[0].tip_angle));
+    let (by_axis, by_other) = (skew.dot(along) / even.dot(along), skew.dot(across) / even.dot(across));
+    assert!((by_axis - 0.5).abs() < 1e-2 && (by_other - 1.0).abs() < 1e-2, "{by_axis} {by_other}");
 }
 
 #[test]

@@ -21,7 +21,7 @@ use crate::{
     },
 };
 
-/// The mip of the foliage that is seen from afar: the coarsest that the renderer uses (its `FOLIAGE_LOD_LIMIT`).
+/// The mip of the foliage that rays see: all have the same coverage, and this one still has the outlines of leaves.
 const FOLIAGE_MIP: usize = 3;
 /// The mip of the bark: texels of some centimetres.
 const BARK_MIP: usize = 4;

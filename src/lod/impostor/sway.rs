@@ -60,7 +60,8 @@ fn nearest_sine(scene: &Scene, model: &TreeModel, heading: Vec3) -> f32 {
 /// The tree as it bends under the pressure along `heading`.
 pub(in crate::lod) fn bent(scene: &Scene, model: &TreeModel, heading: Vec3) -> Scene {
     let tip_angle = |beam: &BeamDynamics| {
-        heading.reject_from_normalized(beam.direction) * (SLOPE_TIP * beam.in_leaf.open_country_gain() * PRESSURE_M2_S2)
+        let load = beam.effective_load(heading.reject_from_normalized(beam.direction) * PRESSURE_M2_S2);
+        load * (SLOPE_TIP * beam.in_leaf.open_country_gain())
     };
     let mut poses = vec![BeamPose::REST; model.beams.len()];
     TreePoser::bent(&model.beams, tip_angle).pose(&[], Vec3::ZERO, &mut poses);

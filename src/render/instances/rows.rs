@@ -5,6 +5,7 @@ use crate::{
     tree::LeafSeason,
     wind::{Canopy, PackedCanopy},
 };
+use bevy::math::Vec3;
 use bytemuck::{Pod, Zeroable};
 
 /// `BeamRow` of the shader: one beam of a model.
@@ -21,7 +22,8 @@ pub(crate) struct BeamRow {
     parent: u32,
     leaf_season: u32,
     angle_limit_rad: f32,
-    padding: u32,
+    /// See [`packed_stiff_axis`].
+    stiff_axis: u32,
 }
 
 impl BeamRow {
@@ -39,9 +41,26 @@ impl BeamRow {
             parent: beam.parent,
             leaf_season: leaf_season.bits(),
             angle_limit_rad: beam.angle_limit_rad,
-            padding: 0,
+            stiff_axis: packed_stiff_axis(beam),
         }
     }
+}
+
+/// The stiff axis of a beam by the two vectors of [`across`], in 16 bits with a sign each.
+fn packed_stiff_axis(beam: &BeamDynamics) -> u32 {
+    let [a, b] = across(beam.direction).map(|across| {
+        let share = across.dot(beam.stiff_axis).clamp(-1.0, 1.0);
+        u32::from((share * 32_767.0).round() as i16 as u16)
+    });
+    a | b << 16
+}
+
+/// Two unit vectors across a unit vector and each other, as `across` of the shader (Duff et al. 2017, J. Comput. Graph. Tech. 6).
+fn across(direction: Vec3) -> [Vec3; 2] {
+    let Vec3 { x, y, z } = direction;
+    let sign = if z < 0.0 { -1.0 } else { 1.0 };
+    let (a, b) = (-1.0 / (sign + z), -x * y / (sign + z));
+    [Vec3::new(1.0 + sign * x * x * a, sign * b, -sign * x), Vec3::new(b, sign + y * y * a, -y)]
 }
 
 /// `LeafySway` of the shader: a sway in leaf and bare.
@@ -184,13 +203,29 @@ pub(crate) const MAX_VIEWERS: usize = 8;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::buffers::sway_buffers::FRAME_BYTES;
+    use crate::{
+        dynamics::test_beams::{OAK, upright},
+        render::buffers::sway_buffers::FRAME_BYTES,
+    };
 
     #[test]
     fn rows_have_the_sizes_of_the_shader() {
         assert_eq!(size_of::<BeamRow>(), 96);
         assert_eq!(size_of::<FrameRow>() as u64, FRAME_BYTES);
         assert_eq!(size_of::<TreeRow>(), 64);
+    }
+
+    #[test]
+    fn stiff_axes_are_packed_across_their_beams() {
+        for direction in [Vec3::Y, Vec3::NEG_Z, Vec3::new(0.48, 0.6, -0.64), Vec3::new(-0.8, 0.0, 0.6)] {
+            let [a, b] = across(direction);
+            let dots = [a.dot(direction), b.dot(direction), a.dot(b), a.length() - 1.0, b.length() - 1.0];
+            assert!(dots.iter().all(|dot| dot.abs() < 1e-6), "{direction}: {dots:?}");
+            let stiff_axis = 0.3 * a - 0.5 * b;
+            let packed = packed_stiff_axis(&BeamDynamics { direction, stiff_axis, ..upright(OAK, 1.0) });
+            let [of_a, of_b] = [packed as u16, (packed >> 16) as u16].map(|bits| f32::from(bits as i16) / 32_767.0);
+            assert!((a * of_a + b * of_b).distance(stiff_axis) < 5e-5, "{direction}");
+        }
     }
 
     #[test]

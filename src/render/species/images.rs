@@ -7,9 +7,8 @@ use crate::{
 };
 use bevy::{image::ImageAddressMode, prelude::*};
 
-/// Coarsest mip of masked foliage that is used: beyond it a spray is a few texels, between which no alpha passes the mask,
-/// and distant crowns would go bare.
-const FOLIAGE_LOD_LIMIT: f32 = 3.0;
+/// Coarsest mip of masked foliage that is used: beyond its 16 x 16 texels a spray is a blot.
+const FOLIAGE_LOD_LIMIT: f32 = 5.0;
 
 /// All textures of a species.
 pub(crate) struct SpeciesImages {

@@ -9,10 +9,17 @@ use rand::{RngExt, SeedableRng, rngs::Xoshiro256PlusPlus};
 use super::settings::{Leaf, LeafArrangement, LeafShape};
 
 /// A stretch of twig.
+#[derive(Clone, Copy)]
 pub(super) struct Shoot {
     pub root: Vec2,
     pub tip: Vec2,
     pub radius: f32,
+}
+
+impl Shoot {
+    pub fn length(&self) -> f32 {
+        self.root.distance(self.tip)
+    }
 }
 
 /// A leaf of a spray.

@@ -20,6 +20,8 @@ use crate::{
     tree::{foliage::Foliage, green_wood::GreenWood},
 };
 
+pub use bare_spray::bare_spray_texture;
+
 /// The two textures of a spray.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeafTextures {
@@ -32,8 +34,6 @@ pub struct LeafTextures {
 
 /// Side of the texture, texels.
 const SIZE: usize = 512;
-/// Texels in a unit of length: the twig runs along the diagonal.
-const TEXELS: f32 = SIZE as f32 * std::f32::consts::SQRT_2;
 /// Brightness of the lowest leaves of a spray against the topmost.
 const LOWEST_SHADE: f32 = 0.55;
 /// Darkness of the shade of a leaf, and how far it reaches beyond the leaf, in lengths of the spray.
@@ -49,7 +49,7 @@ pub fn leaf_textures(foliage: &Foliage, green: &GreenWood, seed: u64) -> LeafTex
     leaves.sort_by(|a, b| a.level.total_cmp(&b.level));
 
     let blade = Blade::new(leaf);
-    let mut canvas = SprayCanvas::new(leaf);
+    let mut canvas = SprayCanvas::new(leaf, SIZE);
     let [twig, side_shoots] = green.of_spray(leaf.twig_colour);
     // A quarter of the leaves is below the twigs.
     let below = leaves.len() / 4;
@@ -59,31 +59,6 @@ pub fn leaf_textures(foliage: &Foliage, green: &GreenWood, seed: u64) -> LeafTex
     }
     leaves[below..].iter().for_each(|leaf| canvas.leaf(&blade, leaf));
     LeafTextures { base_colour: canvas.colours.into_mask_texture(), normal: canvas.normals.into_normal_texture() }
-}
-
-/// Half the width of the thinnest line of a bare spray, texels: thinner ones would break into dots a mip or two later.
-const THINNEST_TEXELS: f32 = 1.2;
-/// Length of the spur that bore a leaf, in leaves.
-const SPUR: f32 = 0.4;
-
-/// Renders the colour of the same spray in winter: its twigs, and the spurs that bore its leaves. Its mask has as much coverage in every
-/// mip, so that from afar few lines stay, and these do not break.
-#[must_use]
-pub fn bare_spray_texture(foliage: &Foliage, green: &GreenWood, seed: u64) -> TextureData {
-    let leaf = &foliage.leaf;
-    let (shoots, leaves) = spray(leaf, seed);
-    let mut canvas = SprayCanvas::new(leaf);
-    let [twig, side_shoots] = green.of_spray(leaf.twig_colour);
-    let thinnest = THINNEST_TEXELS / TEXELS;
-    for leaf in leaves.iter().step_by(2) {
-        let tip = leaf.root + leaf.direction * (SPUR * leaf.length);
-        canvas.twig(&Shoot { root: leaf.root, tip, radius: thinnest }, side_shoots);
-    }
-    for (index, shoot) in shoots.iter().enumerate() {
-        let shoot = Shoot { radius: shoot.radius.max(2.0 * thinnest), ..*shoot };
-        canvas.twig(&shoot, if index == 0 { twig } else { side_shoots });
-    }
-    canvas.colours.into_mask_texture()
 }
 
 /// What is blended over a texel: coverage, colour, normal and translucency; or shade, where nothing covers it.
@@ -105,7 +80,10 @@ fn waves(leaf: &Leaf) -> Option<FourierWaves> {
     (leaf.mottle > 0.0).then(|| texture.waves().ok()).flatten()
 }
 
+#[derive(Clone)]
 struct SprayCanvas {
+    /// Side, texels.
+    size: usize,
     /// How far the Fourier texture darkens and lightens leaves; no waves where it does not.
     mottle: f32,
     waves: Option<FourierWaves>,
@@ -117,30 +95,36 @@ struct SprayCanvas {
 }
 
 impl SprayCanvas {
-    fn new(leaf: &Leaf) -> Self {
+    fn new(leaf: &Leaf, size: usize) -> Self {
         let colour = linear(leaf.colour);
         let ground = mix(colour, [0.0; 3], 0.3);
         Self {
+            size,
             mottle: leaf.mottle,
             waves: waves(leaf),
-            colours: LinearImage::filled(SIZE, [ground[0], ground[1], ground[2], 0.0]),
-            normals: LinearImage::filled(SIZE, [0.0, 0.0, 1.0, 1.0]),
+            colours: LinearImage::filled(size, [ground[0], ground[1], ground[2], 0.0]),
+            normals: LinearImage::filled(size, [0.0, 0.0, 1.0, 1.0]),
             colour,
             young: linear(leaf.young_colour),
             back: linear(leaf.back_colour),
         }
     }
 
+    /// Texels in a unit of length: the twig runs along the diagonal.
+    fn texels(size: usize) -> f32 {
+        size as f32 * std::f32::consts::SQRT_2
+    }
+
     fn twig(&mut self, shoot: &Shoot, bark: [f32; 3]) {
         let axis = shoot.tip - shoot.root;
-        let radius = shoot.radius;
+        let (radius, texels) = (shoot.radius, Self::texels(self.size));
         let direction = axis.normalize_or(Vec2::X);
         self.draw(shoot.root + 0.5 * axis, 0.5 * axis.length() + 2.0 * radius, |point| {
             let share = ((point - shoot.root).dot(axis) / axis.length_squared().max(1e-9)).clamp(0.0, 1.0);
             let tapered = radius * (1.0 - 0.5 * share);
             let side = (point - shoot.root - axis * share).dot(direction.perp()) / tapered;
             let off = point.distance(shoot.root + axis * share);
-            let coverage = (0.5 + (tapered - off) * TEXELS).clamp(0.0, 1.0);
+            let coverage = (0.5 + (tapered - off) * texels).clamp(0.0, 1.0);
             let lit = 1.1 - 0.5 * side.clamp(-1.0, 1.0).powi(2);
             let normal = normal(direction.perp() * side.clamp(-0.9, 0.9), 0.0);
             Some(Fragment { coverage, shade: 0.0, colour: bark.map(|channel| channel * lit), normal })
@@ -152,7 +136,7 @@ impl SprayCanvas {
         let grown = mix(self.colour, self.young, (0.75 * leaf.youth + 0.35 * leaf.tone).min(1.0));
         let base = if leaf.turned { mix(grown, self.back, 0.85) } else { grown };
         let tone = level * (0.85 + 0.3 * leaf.tone);
-        let texels = leaf.length * leaf.projected.min_element() * TEXELS;
+        let texels = leaf.length * leaf.projected.min_element() * Self::texels(self.size);
         let middle = leaf.root + leaf.direction * (0.5 * leaf.length);
         let (mottle, waves) = (self.mottle, self.waves.clone());
         let mottling = |point: Vec2| waves.as_ref().map_or(1.0, |waves| 1.0 + mottle * (waves.at(point) - 0.5));
@@ -179,7 +163,7 @@ impl SprayCanvas {
 
     /// Blends the fragments of a shape that lies within `radius` of `centre`.
     fn draw(&mut self, centre: Vec2, radius: f32, shape: impl Fn(Vec2) -> Option<Fragment>) {
-        let size = SIZE as f32;
+        let (across, size) = (self.size, self.size as f32);
         // (along, across) to the unit square: x = along + across, y = 1 - along + across.
         let middle = Vec2::new(centre.x + centre.y, 1.0 - centre.x + centre.y) * size;
         let reach = Vec2::splat(radius * std::f32::consts::SQRT_2 * size + 1.0);
@@ -190,7 +174,7 @@ impl SprayCanvas {
                 let (u, v) = ((x as f32 + 0.5) / size, (y as f32 + 0.5) / size);
                 let point = Vec2::new(0.5 * (u + 1.0 - v), 0.5 * (u + v - 1.0));
                 if let Some(fragment) = shape(point) {
-                    self.blend(y as usize * SIZE + x as usize, &fragment);
+                    self.blend(y as usize * across + x as usize, &fragment);
                 }
             }
         }
@@ -230,5 +214,6 @@ fn normal(lean: Vec2, translucency: f32) -> [f32; 4] {
     [HALF * (lean.x + lean.y), HALF * (lean.x - lean.y), 1.0, translucency]
 }
 
+mod bare_spray;
 #[cfg(test)]
 mod tests;

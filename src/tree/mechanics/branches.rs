@@ -1,6 +1,9 @@
 //! Cuts a skeleton into branches, each with the lumps of mass and drag that it carries.
 
-use super::hinges::{Hinge, branch_hinges};
+use super::{
+    hinges::{Hinge, branch_hinges},
+    skew::stiff_axes,
+};
 use crate::{
     constants::AIR_DENSITY_KG_M3,
     tree::{
@@ -41,6 +44,8 @@ pub(super) struct LoadedBranch {
     /// Many hinges for its bend, and few for its sway.
     pub hinges: Vec<Hinge>,
     pub swaying_hinges: Vec<Hinge>,
+    /// In which each of its beams bends less.
+    pub stiff_axes: Vec<Vec3>,
     /// From its root on, at rest.
     pub direction: Vec3,
     /// Its root and its tip at rest, m.
@@ -148,6 +153,7 @@ impl LoadedBranch {
     /// Gives it its hinges, for which its lumps must be there.
     pub fn hinge(&mut self, species: &Species, skeleton: &Skeleton) {
         [self.hinges, self.swaying_hinges] = branch_hinges(species, skeleton, &self.beams, self.bears);
+        self.stiff_axes = stiff_axes(self, skeleton);
     }
 
     /// A branch that has no beam yet.
@@ -158,6 +164,7 @@ impl LoadedBranch {
             lumps: Vec::new(),
             hinges: Vec::new(),
             swaying_hinges: Vec::new(),
+            stiff_axes: Vec::new(),
             direction: first.direction,
             base,
             tip: base,
@@ -181,6 +188,7 @@ impl LoadedBranch {
             lumps,
             hinges: self.hinges.clone(),
             swaying_hinges: self.swaying_hinges.clone(),
+            stiff_axes: self.stiff_axes.clone(),
             ..*self
         }
     }

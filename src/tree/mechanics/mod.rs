@@ -19,8 +19,8 @@
 //! Weight pulls over what leans, and holds what hangs: stems and twigs bend further by it, or less, and all branches sway slower, or faster.
 //! How far a branch that bears others bends is worked out without its own weight.
 //!
-//! A beam's turn is such that it moves the tip of its branch, along the wind, as far as its wood does by bending and twisting. What it cannot do
-//! is move it out of that direction, as the twist of a crooked branch does. Where the
+//! A beam's turn is such that it moves the tip of its branch, along the wind, as far as its wood does by bending and twisting, and in other
+//! directions, as the twist of a crooked branch does, as nearly as one beam can (skew.rs). Where the
 //! drag of a beam is, in height and in spread, is weighed by how much it bends that beam: that decides how much of the mean
 //! wind and of its gusts the beam feels (`dynamics::beam`). All this is worked out twice, with leaves and without.
 
@@ -31,6 +31,7 @@ mod four;
 mod hinges;
 mod resonance;
 mod response;
+mod skew;
 mod statics;
 
 pub(crate) use branches::{Piece, tree_pieces};
@@ -44,6 +45,8 @@ use super::{
     skeleton::{Skeleton, SkeletonBeam},
     species::Species,
 };
+use bevy::math::Vec3;
+
 use crate::dynamics::{
     admittance::equivalent_size_m,
     beam::{BeamDynamics, BeamSway, NO_PARENT},
@@ -62,7 +65,12 @@ pub(super) fn beam_dynamics(species: &Species, skeleton: &Skeleton) -> Vec<BeamD
     let exponents = [species.foliage.drag_exponent, species.wood.drag_exponent];
     let in_leaf = TreeResponse::new(&tree, &tree.branches, skeleton);
     in_leaf.write(&tree, exponents[usize::from(!has_leaves)], |beam, sway| rows[beam].in_leaf = sway);
-    tree.branches.iter().for_each(|branch| share_angle_limit(branch, &mut rows));
+    for branch in &tree.branches {
+        share_angle_limit(branch, &mut rows);
+        for (&beam, stiff_axis) in branch.beams.iter().zip(&branch.stiff_axes) {
+            rows[beam as usize].stiff_axis = *stiff_axis;
+        }
+    }
     if has_leaves && !species.phenology.evergreen {
         let branches: Vec<LoadedBranch> = tree.branches.iter().map(LoadedBranch::without_leaves).collect();
         let bare = TreeResponse::new(&tree, &branches, skeleton);
@@ -149,6 +157,7 @@ fn at_rest(species: &Species, beam: &SkeletonBeam) -> BeamDynamics {
         direction: beam.direction,
         attach: beam.attach,
         parent: beam.parent.unwrap_or(NO_PARENT),
+        stiff_axis: Vec3::ZERO,
         compliance_rad_n_m: hinges::beam_compliance(species, beam) as f32,
         in_leaf: BeamSway::default(),
         angle_limit_rad: TIP_ANGLE_LIMIT,

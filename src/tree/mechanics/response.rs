@@ -2,17 +2,18 @@
 
 use super::{
     branches::{LoadedBranch, Lump},
+    skew::posed_m,
     statics::{Beyond, influence, softening, winds},
 };
 use crate::{dynamics::bend::SLOPE_TIP, tree::skeleton::Skeleton};
-use bevy::math::DVec3;
+use bevy::math::{DVec3, Vec3};
 use std::f64::consts::TAU;
 
 /// Roughness lengths of open country and of land with scattered trees, m ("roughly open" and "rough" in Davenport's
 /// classes; Wieringa 1992, J. Wind Eng. Ind. Aerodyn. 41): the pressure at a load's height is right over both.
 const ROUGHNESS_M: [f64; 2] = [0.1, 0.3];
 
-/// The most that a beam turns for the sake of its tip's place, by what its wood turns: it would be more where the beam points so
+/// The most that a beam turns for the sake of its tip's place, by what its wood turns in a level wind or in one from below: it would be more where the beam points so
 /// that its turn hardly moves the branch's tip.
 const MOST_TURN: f64 = 2.0;
 
@@ -122,30 +123,30 @@ impl LoadedBranch {
     fn loads(&self, skeleton: &Skeleton, winds: &[DVec3]) -> Vec<BeamLoad> {
         let sums = Beyond::sums(self, &self.hinges, load_moments);
         let mut moved = vec![[0.0; MOMENTS]; self.beams.len()];
-        let mut turned = vec![0.0; self.beams.len()];
+        let mut turned = vec![[0.0; 2]; self.beams.len()];
         for (hinge, sum) in self.hinges.iter().zip(&sums) {
             for &wind in winds {
                 let influence = influence(hinge, self.tip, wind);
                 for (n, moved) in moved[hinge.beam].iter_mut().enumerate() {
                     *moved += sum.about(hinge.at, n).dot(influence);
                 }
-                turned[hinge.beam] += hinge.turn(sum.about(hinge.at, 0).cross(wind)).length() / winds.len() as f64;
+                turned[hinge.beam][0] += hinge.turn(sum.about(hinge.at, 0).cross(wind)).length() / winds.len() as f64;
             }
+            turned[hinge.beam][1] += hinge.turn(sum.about(hinge.at, 0).cross(DVec3::Y)).length();
         }
-        let posed = |beam: u32| {
-            let beam = &skeleton.beams[beam as usize];
-            let (direction, length_m) = (beam.direction.as_dvec3(), f64::from(beam.length_m));
-            let beyond = self.tip - (beam.base.as_dvec3() + direction * length_m);
-            winds
-                .iter()
-                .map(|&wind| {
-                    let turn = wind.reject_from(direction);
-                    (turn * (length_m / f64::from(SLOPE_TIP)) + direction.cross(turn).cross(beyond)).dot(wind)
-                })
-                .sum::<f64>()
+        let posed = |(&beam, stiff_axis): (&u32, &Vec3)| {
+            let (beam, stiff_axis) = (&skeleton.beams[beam as usize], stiff_axis.as_dvec3());
+            let along_wind = |&wind: &DVec3| {
+                let across = wind.reject_from_normalized(beam.direction.as_dvec3());
+                posed_m(beam, self.tip, across - stiff_axis * stiff_axis.dot(across)).dot(wind)
+            };
+            winds.iter().map(along_wind).sum::<f64>()
         };
-        let turns = self.beams.iter().zip(moved).zip(turned);
-        turns.map(|((&beam, moved), turned)| BeamLoad::of(&moved, posed(beam), MOST_TURN * turned)).collect()
+        let posed = self.beams.iter().zip(&self.stiff_axes).map(posed);
+        let turns = moved.iter().zip(posed).zip(turned);
+        turns
+            .map(|((moved, posed_m), turned)| BeamLoad::of(moved, posed_m, MOST_TURN * turned[0].max(turned[1])))
+            .collect()
     }
 
     /// Radius at a distance from the root, m; beyond its end that of the tip.

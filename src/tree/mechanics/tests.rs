@@ -1,13 +1,14 @@
 //! Sway frequencies against closed forms and against the measurements of foresters.
 
 use super::{
-    branches::{LoadedBranch, Lump},
+    branches::{Carrier, LoadedBranch, Lump},
     hinges::{BARK_SHARE, Hinge, beam_compliance},
     resonance::resonances_hz,
+    skew::{posed_m, stiff_axes},
     statics::{Beyond, GRAVITY_M_S2, PieceWeight, influence, softening, stands},
     *,
 };
-use crate::tree::individual::grow;
+use crate::{dynamics::bend::SLOPE_TIP, tree::individual::grow};
 use bevy::math::{DVec3, Vec3};
 use std::f64::consts::TAU;
 
@@ -56,6 +57,7 @@ fn branch(hinges: Vec<Hinge>, lumps: Vec<Lump>, tip: DVec3) -> LoadedBranch {
         lumps,
         swaying_hinges: hinges.clone(),
         hinges,
+        stiff_axes: vec![Vec3::ZERO],
         direction: tip.normalize().as_vec3(),
         base: DVec3::ZERO,
         tip,
@@ -65,13 +67,15 @@ fn branch(hinges: Vec<Hinge>, lumps: Vec<Lump>, tip: DVec3) -> LoadedBranch {
     }
 }
 
+const DRAG_KG_M: f64 = 0.01;
+
 fn lump(attach_m: f64, mass_kg: f64, at: DVec3) -> Lump {
     Lump {
         attach_m,
         arm_m: 0.0,
         beside_m: 0.0,
         mass_kg,
-        drag_kg_m: 0.01,
+        drag_kg_m: DRAG_KG_M,
         at: at.as_vec3(),
         is_leaf: false,
         is_own: true,
@@ -96,6 +100,21 @@ fn rod(from: DVec3, direction: DVec3, length_m: f64, before_m: f64, [bend_nm2, t
         }
     };
     (0..count).map(hinge).collect()
+}
+
+/// A skeleton of these beams, each with its root, its direction and its length, m.
+fn two_beams(beams: [(DVec3, DVec3, f64); 2]) -> Skeleton {
+    let mut skeleton = grow(&shipped("oak"), 1.0, 1);
+    skeleton.clusters.clear();
+    skeleton.beams.truncate(1);
+    let root = skeleton.beams.remove(0);
+    skeleton.beams.extend(beams.map(|(base, direction, length_m)| SkeletonBeam {
+        base: base.as_vec3(),
+        direction: direction.as_vec3(),
+        length_m: length_m as f32,
+        ..root
+    }));
+    skeleton
 }
 
 /// By the moment of a force at the tip, piece by piece.
@@ -180,6 +199,48 @@ fn a_crooked_branch_bends_and_twists_as_a_bent_cantilever() {
     assert!((deflection / expected - 1.0).abs() < 1e-3, "{deflection} {expected}");
 }
 
+/// An L in a plane that is tipped by an angle about the line from its root to its tip, with the wind level and across that line. In its
+/// plane it only bends, by `int M^2 / EI`; out of it it also twists, as above: so it moves askew of the wind.
+#[test]
+fn a_crooked_branch_moves_askew_of_the_wind() {
+    let ([a_m, b_m], [bend_nm2, twist_nm2]) = ([2.0_f64, 1.2_f64], [300.0, 40.0]);
+    let length_m = a_m.hypot(b_m);
+    for tip_by_rad in [0.3_f64, 0.8, 1.3] {
+        let in_plane = DVec3::new(0.0, tip_by_rad.cos(), tip_by_rad.sin());
+        let out_of_plane = DVec3::X.cross(in_plane);
+        let u = (DVec3::X * a_m - in_plane * b_m) / length_m;
+        let v = (DVec3::X * b_m + in_plane * a_m) / length_m;
+        let (corner, tip) = (u * a_m, DVec3::X * length_m);
+        let mut hinges = rod(DVec3::ZERO, u, a_m, 0.0, [bend_nm2, twist_nm2]);
+        let second = rod(corner, v, b_m, a_m, [bend_nm2, twist_nm2]);
+        hinges.extend(second.into_iter().map(|hinge| Hinge { beam: 1, ..hinge }));
+        let skeleton = two_beams([(DVec3::ZERO, u, a_m), (corner, v, b_m)]);
+        let mut bent = branch(hinges, vec![lump(a_m + b_m, 0.0, tip)], tip);
+        bent.beams = vec![0, 1];
+        bent.carrier = Some(Carrier { branch: 0, attach_m: 0.0 });
+        bent.stiff_axes = stiff_axes(&bent, &skeleton);
+
+        // Moments of a unit force at the tip, in the plane, for each leg: by the way along it that is left, and by the other leg.
+        let [along, across] = [DVec3::X, in_plane].map(|force| [u, v].map(|leg| leg.cross(force).dot(out_of_plane)));
+        let work = |[p, q]: [f64; 2]| {
+            let first = a_m * a_m * (a_m * p * across[0] / 3.0 + 0.5 * b_m * (p * across[1] + q * across[0]));
+            (first + a_m * b_m * b_m * q * across[1] + b_m.powi(3) * q * across[1] / 3.0) / bend_nm2
+        };
+        let out = (a_m.powi(3) + b_m.powi(3)) / (3.0 * bend_nm2) + a_m * b_m * b_m / twist_nm2;
+        let expected =
+            (DVec3::X * work(along) + in_plane * work(across)) * in_plane.z + out_of_plane * (out * out_of_plane.z);
+        let loads = bent.response(&skeleton).loads;
+        let moved: DVec3 = (skeleton.beams.iter().zip(&loads).zip(&bent.stiff_axes))
+            .map(|((beam, load), stiff_axis)| {
+                let (across, stiff_axis) = (DVec3::Z.reject_from(beam.direction.as_dvec3()), stiff_axis.as_dvec3());
+                let turn = (across - stiff_axis * stiff_axis.dot(across)) * load.gain * f64::from(SLOPE_TIP);
+                posed_m(beam, tip, turn) / DRAG_KG_M
+            })
+            .sum();
+        assert!(moved.distance(expected) < 0.1 * expected.length(), "{tip_by_rad}: {moved} {expected}");
+    }
+}
+
 /// Timoshenko & Gere (1961): a column buckles under P = pi^2 EI / 4 L^2, a level cantilever tips over sideways under
 /// P = 4.013 sqrt(EI GJ) / L^2 (here it is as stiff upright as sideways, which makes no difference while it is straight).
 #[test]
@@ -209,7 +270,7 @@ fn a_uniform_rod_resonates_at_its_natural_frequency() {
     });
     let hinges = rod(DVec3::ZERO, DVec3::X, length_m, 0.0, [bend_nm2, 1e3 * bend_nm2]);
     let rod = branch(hinges, lumps.collect(), DVec3::X * length_m);
-    let rod = LoadedBranch { carrier: Some(branches::Carrier { branch: 0, attach_m: 0.0 }), ..rod };
+    let rod = LoadedBranch { carrier: Some(Carrier { branch: 0, attach_m: 0.0 }), ..rod };
     let stem = branch(rod.hinges[..1].to_vec(), Vec::new(), DVec3::Y);
     let responses = [&stem, &rod].map(|branch| BranchResponse { loads: Vec::new(), sway: branch.sway() });
     let hz = resonances_hz(&[stem, rod], &responses)[1].expect("within the frequencies tried");

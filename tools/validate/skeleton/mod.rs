@@ -5,7 +5,8 @@
 //!
 //! - *Static*: a small uniform wind pressure. Trunks: where the tip goes, from the two horizontal directions. Main branches:
 //!   where the tip goes as seen from the branch's root, with the wind level and across the branch. The error is the length of
-//!   the difference of the two vectors, over that of the finite elements' vector.
+//!   the difference of the two vectors, over that of the finite elements' vector. Beside it is reported the same for a wind along the
+//!   branch.
 //! - *First frequency*: that of the trunk with all that it bears, at two thirds of its length, where it is measured on real
 //!   trees. Branches as fast as their trunk divide its mode in many, so it is that of the peak which they make together
 //!   ([`peak`]). Beside it is reported how the trunk answers slow gusts ([`onset_hz`]).
@@ -87,6 +88,9 @@ fn summarise(report: &mut Report, all: &[Comparison]) {
     report.record("trunk_two_thirds_error_median", median(|tree| &tree.sensor), "at two thirds of the trunk's length");
     report.record("branch_tip_error_worst", branches, "main branches alone");
     report.record("branch_tip_error_median", median(|tree| &tree.branches), "main branches alone");
+    let along = "the same in a level wind along them, by what one across them does";
+    report.record("branch_tip_along_worst", worst(|tree| &tree.along), along);
+    report.record("branch_tip_along_median", median(|tree| &tree.along), along);
     report.at_most("first_frequency_error_worst", worst(|tree| &tree.first), 0.1, "trunk, all that it bears flexible");
     report.record("first_frequency_error_median", median(|tree| &tree.first), "the same");
     report.record("first_onset_error_worst", worst(|tree| &tree.onset), "against the answer to slow gusts");
@@ -112,6 +116,7 @@ struct Comparison {
     weightless: Vec<f64>,
     sensor: Vec<f64>,
     branches: Vec<f64>,
+    along: Vec<f64>,
     first: Vec<f64>,
     onset: Vec<f64>,
     rigid: Vec<f64>,
@@ -150,6 +155,7 @@ impl Comparison {
             weightless: errors(&weightless, tip),
             sensor: errors(&loaded, sensor),
             branches: Vec::new(),
+            along: Vec::new(),
             first: peaks.map(|peak| over(peak.frequency_hz)).to_vec(),
             onset: onsets_hz.map(over).to_vec(),
             rigid: rigid_peaks.map(|peak| over(peak.frequency_hz)).to_vec(),
@@ -172,9 +178,12 @@ impl Comparison {
     ) {
         let beams = chain(skeleton, first);
         let across = across(skeleton, &beams);
+        let along = across.cross(&Vector3::y());
         let tip = tree.place(skeleton, &beams, 1.0);
         let theirs = Motion::combined(loaded, across).bend(tree, first, tip);
         self.branches.push(relative(&product.bend(first, tip, across), &theirs));
+        let theirs_along = Motion::combined(loaded, along).bend(tree, first, tip);
+        self.along.push((product.bend(first, tip, along) - theirs_along).norm() / theirs.norm());
         let over = |stiffening: f64| {
             let alone = branch(species, skeleton, first, |beam| if beams.contains(&beam) { 1.0 } else { stiffening });
             let sensor = alone.place(skeleton, &beams, SENSOR);
