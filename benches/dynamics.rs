@@ -185,6 +185,7 @@ fn fast_gusts() -> Vec<Vec3> {
 fn tree() -> Vec<BeamDynamics> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(2);
     let mut beams = vec![BeamDynamics {
+        stiff_axis: Vec3::ZERO,
         base: Vec3::ZERO,
         length_m: 9.0,
         direction: Vec3::Y,
@@ -202,6 +203,7 @@ fn tree() -> Vec<BeamDynamics> {
         let on = &beams[parent];
         let class = random.random_range(8.0..30.0);
         beams.push(BeamDynamics {
+            stiff_axis: Vec3::ZERO,
             base: on.base + on.length_m * attach * on.direction,
             length_m: 0.6 * on.length_m,
             direction: Vec3::new(azimuth.cos(), 0.8, azimuth.sin()).normalize(),

@@ -3,12 +3,15 @@
 use crate::{
     render::texture_image::{ALL_MIPS, Channels, device_image, image},
     texture::TextureData,
-    tree::{bark::BarkTextures, textures::SpeciesTextures},
+    tree::{Species, bark::BarkTextures, textures::SpeciesTextures},
 };
 use bevy::{image::ImageAddressMode, prelude::*};
 
 /// Coarsest mip of masked foliage that is used: beyond its 16 x 16 texels a spray is a blot.
 const FOLIAGE_LOD_LIMIT: f32 = 5.0;
+/// The same of ellipsoids, the alpha of which is weighed by how they are seen: in coarser mips it is nearly the same everywhere, so that all
+/// of a leaf would pass, or nothing.
+const ELLIPSOID_LOD_LIMIT: f32 = 3.0;
 
 /// All textures of a species.
 pub(crate) struct SpeciesImages {
@@ -24,13 +27,13 @@ pub(crate) struct SpeciesImages {
 
 impl SpeciesImages {
     /// With `compresses`, in blocks, where the device reads these: a fifth as many bytes.
-    pub fn new(textures: &SpeciesTextures, compresses: bool) -> Self {
+    pub fn new(species: &Species, textures: &SpeciesTextures, compresses: bool) -> Self {
         let BarkTextures { base_colour, normal, surface } = &textures.bark;
         let repeating =
             |texture, channels| device_image(texture, channels, compresses, ImageAddressMode::Repeat, ALL_MIPS);
-        let masked = |texture| {
-            device_image(texture, Channels::Rgba, compresses, ImageAddressMode::ClampToEdge, FOLIAGE_LOD_LIMIT)
-        };
+        let coarsest = if species.has_ellipsoids() { ELLIPSOID_LOD_LIMIT } else { FOLIAGE_LOD_LIMIT };
+        let masked =
+            |texture| device_image(texture, Channels::Rgba, compresses, ImageAddressMode::ClampToEdge, coarsest);
         Self {
             bark: repeating(base_colour, Channels::Rgb),
             bark_normal: repeating(normal, Channels::Normal),

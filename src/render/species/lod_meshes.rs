@@ -115,7 +115,7 @@ pub(crate) fn species_meshes(
     };
     let variants = models.iter().map(variant).collect();
     let images = textures.filter(|_| has_images);
-    SpeciesMeshes { images: images.map(|it| SpeciesImages::new(&it, recipe.compresses_textures)), variants }
+    SpeciesMeshes { images: images.map(|it| SpeciesImages::new(species, &it, recipe.compresses_textures)), variants }
 }
 
 /// A level of [`LevelStyle::Thinned`] with the meshes of those of its parts that are wanted: the tree itself, or a thinned one. Only the last

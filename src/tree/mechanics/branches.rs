@@ -1,9 +1,6 @@
 //! Cuts a skeleton into branches, each with the lumps of mass and drag that it carries.
 
-use super::{
-    hinges::{Hinge, branch_hinges},
-    skew::stiff_axes,
-};
+use super::hinges::{Hinge, branch_hinges};
 use crate::{
     constants::AIR_DENSITY_KG_M3,
     tree::{
@@ -44,7 +41,7 @@ pub(super) struct LoadedBranch {
     /// Many hinges for its bend, and few for its sway.
     pub hinges: Vec<Hinge>,
     pub swaying_hinges: Vec<Hinge>,
-    /// In which each of its beams bends less.
+    /// In which each of its beams bends less: none before it is found.
     pub stiff_axes: Vec<Vec3>,
     /// From its root on, at rest.
     pub direction: Vec3,
@@ -153,7 +150,6 @@ impl LoadedBranch {
     /// Gives it its hinges, for which its lumps must be there.
     pub fn hinge(&mut self, species: &Species, skeleton: &Skeleton) {
         [self.hinges, self.swaying_hinges] = branch_hinges(species, skeleton, &self.beams, self.bears);
-        self.stiff_axes = stiff_axes(self, skeleton);
     }
 
     /// A branch that has no beam yet.
@@ -176,6 +172,7 @@ impl LoadedBranch {
 
     fn extend(&mut self, index: u32, beam: &SkeletonBeam) {
         self.beams.push(index);
+        self.stiff_axes.push(Vec3::ZERO);
         self.tip = (beam.base + beam.direction * beam.length_m).as_dvec3();
         self.length_m += f64::from(beam.length_m);
     }

@@ -40,19 +40,19 @@ use self::{
     branches::{LoadedBranch, LoadedTree, branches},
     composite::{CompositeSway, composite_sways},
     response::{BeamLoad, BranchResponse},
+    skew::stiff_axes,
 };
 use super::{
     skeleton::{Skeleton, SkeletonBeam},
     species::Species,
 };
-use bevy::math::Vec3;
-
 use crate::dynamics::{
     admittance::equivalent_size_m,
     beam::{BeamDynamics, BeamSway, NO_PARENT},
     frequency_classes::FrequencyClasses,
     pose::TIP_ANGLE_LIMIT,
 };
+use bevy::math::Vec3;
 
 /// Height at which foresters measure a trunk's diameter, m.
 const BREAST_HEIGHT_M: f32 = 1.3;
@@ -60,7 +60,7 @@ const BREAST_HEIGHT_M: f32 = 1.3;
 /// The beams of `skeleton` as rows for posing, in the same order.
 pub(super) fn beam_dynamics(species: &Species, skeleton: &Skeleton) -> Vec<BeamDynamics> {
     let mut rows: Vec<BeamDynamics> = skeleton.beams.iter().map(|beam| at_rest(species, beam)).collect();
-    let tree = branches(species, skeleton);
+    let tree = loaded_tree(species, skeleton);
     let has_leaves = !skeleton.clusters.is_empty();
     let exponents = [species.foliage.drag_exponent, species.wood.drag_exponent];
     let in_leaf = TreeResponse::new(&tree, &tree.branches, skeleton);
@@ -79,6 +79,15 @@ pub(super) fn beam_dynamics(species: &Species, skeleton: &Skeleton) -> Vec<BeamD
         rows.iter_mut().for_each(|row| row.bare = row.in_leaf);
     }
     rows
+}
+
+/// The branches of a tree with their stiff axes.
+fn loaded_tree(species: &Species, skeleton: &Skeleton) -> LoadedTree {
+    let mut tree = branches(species, skeleton);
+    for branch in &mut tree.branches {
+        branch.stiff_axes = stiff_axes(branch, skeleton);
+    }
+    tree
 }
 
 /// How all branches of a tree respond, in leaf or bare.
