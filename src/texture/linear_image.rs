@@ -122,6 +122,29 @@ impl LinearImage {
         Self::texture(drawn, shrink, colour_bytes, Texels::Colour)
     }
 
+    /// Colours with an alpha that is weighed before it is cut off: in every mip all alphas have the shares that they have in the first, so that
+    /// as much passes whatever the weight is.
+    pub(crate) fn into_weighed_mask_texture(self) -> TextureData {
+        let mut alphas: Vec<f32> = self.texels.iter().map(|texel| texel[3]).collect();
+        alphas.sort_by(f32::total_cmp);
+        let shrink = |image: &Self| {
+            let mut half = image.downsampled();
+            half.rank_alphas_as(&alphas);
+            half
+        };
+        self.into_texture(shrink, colour_bytes, Texels::Colour)
+    }
+
+    /// Gives each alpha the one of its rank among others, which are sorted.
+    fn rank_alphas_as(&mut self, alphas: &[f32]) {
+        let count = self.texels.len();
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by(|a, b| self.texels[*a][3].total_cmp(&self.texels[*b][3]));
+        for (rank, texel) in order.into_iter().enumerate() {
+            self.texels[texel][3] = alphas[(2 * rank + 1) * alphas.len() / (2 * count)];
+        }
+    }
+
     /// Measures that are no colours, each channel averaged by itself.
     pub(crate) fn into_linear_texture(self) -> TextureData {
         self.into_texture(|image| image.halved(|_| 1.0), linear_bytes, Texels::Linear)
