@@ -11,7 +11,7 @@ use super::{
 };
 
 /// Places each way in a texel at which a mask is looked at.
-const PLACES_A_TEXEL: usize = 3;
+const PLACES_A_TEXEL: usize = 2;
 
 /// An image in linear floats, before it is a texture.
 #[derive(Clone, Debug)]
