@@ -55,7 +55,8 @@ fn packed_stiff_axis(beam: &BeamDynamics) -> u32 {
     a | b << 16
 }
 
-/// Two unit vectors across a unit vector and each other, as `across` of the shader (Duff et al. 2017, J. Comput. Graph. Tech. 6).
+/// Two unit vectors across a unit vector and each other (Duff et al. 2017, J. Comput. Graph. Tech. 6): those of `stiff_axis_of` in the shader,
+/// for -0 as well, for which glam's `any_orthonormal_pair` has others.
 fn across(direction: Vec3) -> [Vec3; 2] {
     let Vec3 { x, y, z } = direction;
     let sign = if z < 0.0 { -1.0 } else { 1.0 };

@@ -9,8 +9,8 @@ use bevy::{image::ImageAddressMode, prelude::*};
 
 /// Coarsest mip of masked foliage that is used: beyond its 16 x 16 texels a spray is a blot.
 const FOLIAGE_LOD_LIMIT: f32 = 5.0;
-/// The same of ellipsoids, the alpha of which is weighed by how they are seen: in coarser mips it is nearly the same everywhere, so that all
-/// of a leaf would pass, or nothing.
+/// The same of ellipsoids. All their mips have the same alphas, but in coarser ones no two neighbours have the same, and what is interpolated
+/// between them fills the gaps.
 const ELLIPSOID_LOD_LIMIT: f32 = 3.0;
 
 /// All textures of a species.

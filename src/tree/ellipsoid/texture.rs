@@ -75,6 +75,9 @@ mod tests {
         assert!((passing(0, silhouette_alpha(1.0)) - surface.cover).abs() < 0.01);
         // Just inside the outline: alpha is cut at 1, which the outline itself turns into exactly the cut-off.
         assert!((passing(0, silhouette_alpha(0.05)) - surface.outline_cover).abs() < 0.01);
+        (1..5).for_each(|mip| {
+            assert!((passing(mip, 1.0) - surface.cover).abs() < 0.03, "mip {mip}: {}", passing(mip, 1.0));
+        });
         // Of those that are drawn the coarsest is the third.
         for mip in 1..4 {
             let outline = passing(mip, silhouette_alpha(0.05));

@@ -80,7 +80,6 @@ fn waves(leaf: &Leaf) -> Option<FourierWaves> {
     (leaf.mottle > 0.0).then(|| texture.waves().ok()).flatten()
 }
 
-#[derive(Clone)]
 struct SprayCanvas {
     /// Side, texels.
     size: usize,

@@ -20,9 +20,9 @@
 //! How far a branch that bears others bends is worked out without its own weight.
 //!
 //! A beam's turn is such that it moves the tip of its branch, along the wind, as far as its wood does by bending and twisting, and in other
-//! directions, as the twist of a crooked branch does, as nearly as one beam can (skew.rs). Where the
-//! drag of a beam is, in height and in spread, is weighed by how much it bends that beam: that decides how much of the mean
-//! wind and of its gusts the beam feels (`dynamics::beam`). All this is worked out twice, with leaves and without.
+//! directions, as the twist of a crooked branch does, as nearly as one beam can (`skew.rs`). Where the drag of a beam is, in height and in
+//! spread, is weighed by how much it bends that beam: that decides how much of the mean wind and of its gusts the beam feels
+//! (`dynamics::beam`). All this is worked out twice, with leaves and without.
 
 mod articulated;
 mod branches;

@@ -13,8 +13,8 @@ use std::f64::consts::TAU;
 /// classes; Wieringa 1992, J. Wind Eng. Ind. Aerodyn. 41): the pressure at a load's height is right over both.
 const ROUGHNESS_M: [f64; 2] = [0.1, 0.3];
 
-/// The most that a beam turns for the sake of its tip's place, by what its wood turns in a level wind or in one from below: it would be more where the beam points so
-/// that its turn hardly moves the branch's tip.
+/// The most that a beam turns for the sake of its tip's place, by what its wood turns in a level wind or in one from below, whichever is more:
+/// it would be more where the beam points so that its turn hardly moves the branch's tip.
 const MOST_TURN: f64 = 2.0;
 
 /// What a branch does under load.
@@ -123,6 +123,7 @@ impl LoadedBranch {
     fn loads(&self, skeleton: &Skeleton, winds: &[DVec3]) -> Vec<BeamLoad> {
         let sums = Beyond::sums(self, &self.hinges, load_moments);
         let mut moved = vec![[0.0; MOMENTS]; self.beams.len()];
+        // In a level wind, and in one from below.
         let mut turned = vec![[0.0; 2]; self.beams.len()];
         for (hinge, sum) in self.hinges.iter().zip(&sums) {
             for &wind in winds {
@@ -145,7 +146,9 @@ impl LoadedBranch {
         let posed = self.beams.iter().zip(&self.stiff_axes).map(posed);
         let turns = moved.iter().zip(posed).zip(turned);
         turns
-            .map(|((moved, posed_m), turned)| BeamLoad::of(moved, posed_m, MOST_TURN * turned[0].max(turned[1])))
+            .map(|((moved, posed_m), [level, below]): (_, [f64; 2])| {
+                BeamLoad::of(moved, posed_m, MOST_TURN * level.max(below))
+            })
             .collect()
     }
 

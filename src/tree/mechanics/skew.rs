@@ -30,9 +30,8 @@ const ISOTROPY: f64 = 1e-3;
 
 /// The stiff axis of each beam of a branch ([`BeamDynamics::stiff_axis`](crate::dynamics::BeamDynamics::stiff_axis)): none where the branch is straight.
 pub(super) fn stiff_axes(branch: &LoadedBranch, skeleton: &Skeleton) -> Vec<Vec3> {
-    let straight = vec![Vec3::ZERO; branch.beams.len()];
     if branch.beams.len() == 1 {
-        return straight;
+        return vec![Vec3::ZERO];
     }
     let winds = winds(branch);
     let drag = Beyond::sums(branch, &branch.hinges, |lump| [lump.drag_kg_m]);

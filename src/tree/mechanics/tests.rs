@@ -67,6 +67,7 @@ fn branch(hinges: Vec<Hinge>, lumps: Vec<Lump>, tip: DVec3) -> LoadedBranch {
     }
 }
 
+/// Drag of a lump, kg/m.
 const DRAG_KG_M: f64 = 0.01;
 
 fn lump(attach_m: f64, mass_kg: f64, at: DVec3) -> Lump {
@@ -106,14 +107,14 @@ fn rod(from: DVec3, direction: DVec3, length_m: f64, before_m: f64, [bend_nm2, t
 fn two_beams(beams: [(DVec3, DVec3, f64); 2]) -> Skeleton {
     let mut skeleton = grow(&shipped("oak"), 1.0, 1);
     skeleton.clusters.clear();
-    skeleton.beams.truncate(1);
-    let root = skeleton.beams.remove(0);
-    skeleton.beams.extend(beams.map(|(base, direction, length_m)| SkeletonBeam {
+    let root = skeleton.beams.swap_remove(0);
+    let beam = |(base, direction, length_m): (DVec3, DVec3, f64)| SkeletonBeam {
         base: base.as_vec3(),
         direction: direction.as_vec3(),
         length_m: length_m as f32,
         ..root
-    }));
+    };
+    skeleton.beams = beams.map(beam).into();
     skeleton
 }
 

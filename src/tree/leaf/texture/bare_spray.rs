@@ -22,8 +22,8 @@ const UNBROKEN_TEXELS: f32 = 0.7;
 const SPUR: f32 = 0.4;
 /// Smaller mips are averages: there is no room for a line.
 const LEAST_DRAWN: usize = 8;
-/// Shares of its length that the last line of a mip may have.
-const SHARES: [f32; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+/// Shares of its length that the last line of a mip may have, if it is there.
+const SHARES: [f32; 4] = [0.25, 0.5, 0.75, 1.0];
 
 /// Renders the colour of the same spray in winter: its twigs, and the spurs that bore its leaves. Its mask has as much coverage in every
 /// mip, so that from afar few lines stay, and these do not break.
@@ -92,7 +92,13 @@ fn with_coverage(foliage: &Foliage, lines: &[Line], size: usize, coverage: f32) 
     };
     let counts: Vec<usize> = (1..=lines.len()).collect();
     let whole = counts.partition_point(|&count| drawn(count, 0.0).coverage() <= coverage);
-    let ends = SHARES.map(|share| drawn(whole, share));
-    let miss = |image: &LinearImage| (image.coverage() - coverage).abs();
-    ends.into_iter().min_by(|a, b| miss(a).total_cmp(&miss(b))).unwrap_or_else(|| drawn(whole, 0.0))
+    let end = |share: f32| {
+        let image = drawn(whole, share);
+        ((image.coverage() - coverage).abs(), image)
+    };
+    let nearer = |best: (f32, LinearImage), share| {
+        let other = end(share);
+        if other.0 < best.0 { other } else { best }
+    };
+    SHARES.into_iter().fold(end(0.0), nearer).1
 }

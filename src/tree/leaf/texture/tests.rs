@@ -58,10 +58,10 @@ fn bare_sprays_keep_the_coverage_of_their_twigs() {
         let bare = bare_spray_texture(&foliage, &GreenWood::default(), 4);
         let full = drawn_share(&bare, 0);
         assert!((0.01..0.7 * leafy).contains(&full), "{shape:?}: {full} of {leafy}");
-        // Down to 16 x 16 texels.
-        for mip in 1..6 {
+        // Down to 16 x 16 texels, of which the last line has some.
+        for (mip, limit) in [(1, 0.1), (2, 0.1), (3, 0.1), (4, 0.15), (5, 0.15)] {
             let share = drawn_share(&bare, mip);
-            assert!((share / full - 1.0).abs() < 0.15, "{shape:?}: {share} of {full} in mip {mip}");
+            assert!((share / full - 1.0).abs() < limit, "{shape:?}: {share} of {full} in mip {mip}");
         }
     }
 }
