@@ -36,4 +36,11 @@ impl BeamPose {
         let turn = Quat::from_vec4(Vec3A::from_array(bend.rotation.vector.0).extend(bend.rotation.scalar));
         (Vec3::from(self.rotation * (Vec3A::from(rest_point) + moved) + self.translation), self.rotation * turn)
     }
+
+    /// Where the point of the axis at `s` (0 to 1) of this pose's beam is now, in metres in the tree's coordinates.
+    pub(crate) fn carry_axis(&self, beam: &BeamDynamics, s: f32) -> Vec3 {
+        let point = AxisPoint::new(beam, s);
+        let bent = point.rest + point.bend(&Vector(self.tip_angle.to_array())).displacement;
+        Vec3::from(self.rotation * Vec3A::from_array(bent.0) + self.translation)
+    }
 }

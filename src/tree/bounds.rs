@@ -14,7 +14,7 @@ use crate::dynamics::{
     bend::{SLOPE_TIP, mode_shape},
     pose::TreePoser,
 };
-use bevy::math::Vec3;
+use bevy::math::{Vec3, Vec3A};
 
 /// An axis-aligned box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,55 +69,67 @@ impl PressureStep {
     }
 }
 
+/// Steps below the limit.
+const STEPS: usize = PressureStep::LIMIT.0 as usize;
+
+/// A value for each step.
+type BySteps = [f32; STEPS];
+
 /// The box around all that is bound to the beams at each step below the limit, of which the box is known.
 pub(super) fn bounds_by_step(beams: &[BeamDynamics], reaches_m: &[f32], limit: SwayBounds) -> Box<[SwayBounds]> {
-    let gains: Vec<f32> = beams.iter().map(greatest_gain).collect();
-    let steps = (0..PressureStep::LIMIT.0).map(PressureStep);
-    steps.map(|step| bounds_under(beams, &gains, reaches_m, step.pressure()).intersection(limit)).collect()
-}
-
-/// How far the root of a beam has been moved, m, and turned, rad, at most, about a place of its parent.
-#[derive(Clone, Copy)]
-struct Carried {
-    about: Vec3,
-    moved_m: f32,
-    turned_rad: f32,
-    /// By how much its own tip turns at most.
-    tip_rad: f32,
-}
-
-impl Carried {
-    /// The place at `s` of the axis, how far that is moved, m, and turned, rad, at most.
-    fn at(&self, beam: &BeamDynamics, s: f32) -> (Vec3, f32, f32) {
-        let [h, h1, ..] = mode_shape(s);
-        let place = beam.base + beam.direction * (beam.length_m * s);
-        let moved_m = self.moved_m + self.turned_rad * place.distance(self.about) + beam.length_m * self.tip_rad * h1;
-        (place, moved_m, self.turned_rad + self.tip_rad * h)
-    }
-}
-
-/// The box around all that is bound to the beams while no load on them is above that pressure, m²/s². `gains` are the greatest of
-/// each beam.
-fn bounds_under(beams: &[BeamDynamics], gains: &[f32], reaches_m: &[f32], pressure: f32) -> SwayBounds {
-    let mut bounds = SwayBounds::ORIGIN;
+    let pressures: BySteps = std::array::from_fn(|step| PressureStep(step as u8).pressure());
+    let mut bounds = [SwayBounds::ORIGIN; STEPS];
     let mut carried: Vec<Carried> = Vec::with_capacity(beams.len());
-    for ((beam, gain), reach_m) in beams.iter().zip(gains).zip(reaches_m) {
-        let free_rad = SLOPE_TIP * gain * pressure;
-        let tip_rad = free_rad.min(beam.angle_limit_rad);
-        let own = match carried.get(beam.parent as usize) {
-            Some(parent) => {
-                let (about, moved_m, turned_rad) = parent.at(&beams[beam.parent as usize], beam.attach);
-                Carried { about, moved_m, turned_rad, tip_rad }
-            }
-            None => Carried { about: beam.base, moved_m: 0.0, turned_rad: 0.0, tip_rad },
-        };
+    for (beam, reach_m) in beams.iter().zip(reaches_m) {
+        let own = Carried::new(beam, beams, &carried, &pressures);
         for s in [0.0, 0.5, 1.0] {
-            let (place, moved_m, _) = own.at(beam, s);
-            bounds.include(place, moved_m + reach_m);
+            let moved_m = own.moved_at(beam, s);
+            let place = beam.base + beam.direction * (beam.length_m * s);
+            for (bounds, moved_m) in bounds.iter_mut().zip(moved_m) {
+                bounds.include(place, moved_m + reach_m);
+            }
         }
         carried.push(own);
     }
-    bounds
+    bounds.into_iter().map(|bounds| bounds.intersection(limit)).collect()
+}
+
+/// How far the root of a beam has been moved, m, and turned, rad, at most, about a place of its parent.
+struct Carried {
+    about: Vec3,
+    moved_m: BySteps,
+    turned_rad: BySteps,
+    /// By how much its own tip turns at most.
+    tip_rad: BySteps,
+}
+
+impl Carried {
+    /// Of a beam whose parents are known, if they come before it.
+    fn new(beam: &BeamDynamics, beams: &[BeamDynamics], carried: &[Self], pressures: &BySteps) -> Self {
+        let free_rad = SLOPE_TIP * greatest_gain(beam);
+        let tip_rad = pressures.map(|pressure| (free_rad * pressure).min(beam.angle_limit_rad));
+        let Some(parent) = carried.get(beam.parent as usize) else {
+            return Self { about: beam.base, moved_m: [0.0; STEPS], turned_rad: [0.0; STEPS], tip_rad };
+        };
+        let (bearer, s) = (&beams[beam.parent as usize], beam.attach);
+        let [h, ..] = mode_shape(s);
+        Self {
+            about: bearer.base + bearer.direction * (bearer.length_m * s),
+            moved_m: parent.moved_at(bearer, s),
+            turned_rad: std::array::from_fn(|step| parent.turned_rad[step] + parent.tip_rad[step] * h),
+            tip_rad,
+        }
+    }
+
+    /// How far the place at `s` of the axis is moved at most, m.
+    fn moved_at(&self, beam: &BeamDynamics, s: f32) -> BySteps {
+        let [_, h1, ..] = mode_shape(s);
+        let place = beam.base + beam.direction * (beam.length_m * s);
+        let (distance_m, by_tip_m) = (place.distance(self.about), beam.length_m * h1);
+        std::array::from_fn(|step| {
+            self.moved_m[step] + self.turned_rad[step] * distance_m + by_tip_m * self.tip_rad[step]
+        })
+    }
 }
 
 /// Of a beam in leaf or bare, s^2/m^2.
@@ -138,17 +150,19 @@ const HURRICANE_RAD: f32 = 1e3;
 pub(super) fn limit_bounds(beams: &[BeamDynamics], reaches_m: &[f32]) -> SwayBounds {
     let mut bounds = SwayBounds::ORIGIN;
     let mut poses = vec![BeamPose::REST; beams.len()];
+    let poser = TreePoser::bent(beams, |_| Vec3::ZERO);
     for step in 0..=BOUND_DIRECTIONS {
         let azimuth = step as f32 / BOUND_DIRECTIONS as f32 * std::f32::consts::TAU;
         // The last step is the tree at rest.
         let lean = if step == BOUND_DIRECTIONS { Vec3::ZERO } else { Vec3::new(azimuth.cos(), 0.0, azimuth.sin()) };
-        let to_the_limit =
-            |beam: &BeamDynamics| lean.reject_from_normalized(beam.direction).normalize_or_zero() * HURRICANE_RAD;
-        TreePoser::bent(beams, to_the_limit).pose(&[], Vec3::ZERO, &mut poses);
+        let to_the_limit = |beam: &BeamDynamics| {
+            Vec3A::from(lean.reject_from_normalized(beam.direction).normalize_or_zero() * HURRICANE_RAD)
+        };
+        let free: Vec<Vec3A> = beams.iter().map(to_the_limit).collect();
+        poser.pose_free(&free, Vec3::ZERO, &mut poses);
         for ((beam, pose), reach_m) in beams.iter().zip(&poses).zip(reaches_m) {
             for s in BOUND_PLACES {
-                let (carried, _) = pose.carry(beam, s, beam.base + beam.direction * (beam.length_m * s));
-                bounds.include(carried, *reach_m);
+                bounds.include(pose.carry_axis(beam, s), *reach_m);
             }
         }
     }

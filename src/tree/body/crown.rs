@@ -103,7 +103,7 @@ impl CrownDensity {
     /// Adds areas, m², to the cell at a place.
     fn add(&mut self, at: Vec3, areas_m2: [f32; 2]) {
         let last = Vec3::new(ACROSS as f32, LAYERS as f32, ACROSS as f32) - 1.0;
-        let place = ((at - self.low) / self.cell).floor().clamp(Vec3::ZERO, last);
+        let place = ((at - self.low) / self.cell).clamp(Vec3::ZERO, last);
         let volume_m3 = self.cell.element_product();
         let [x, y, z] = place.to_array().map(|cell| cell as usize);
         let cell = &mut self.cells[(y * ACROSS + z) * ACROSS + x];

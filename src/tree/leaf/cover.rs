@@ -15,6 +15,10 @@ pub(in crate::tree) fn card_cover(leaf: &Leaf, seed: u64) -> f32 {
     let margin = outline::outline(leaf);
     let middle = Vec2::new(0.5, 0.0);
     let blade_reach = margin.iter().map(|point| point.distance(middle)).fold(0.5, f32::max);
+    let [low, high] =
+        margin.iter().fold([Vec2::INFINITY, Vec2::NEG_INFINITY], |[low, high], at| [low.min(*at), high.max(*at)]);
+    // To look along a margin takes long.
+    let covers = |at: Vec2| at.cmpge(low).all() && at.cmple(high).all() && outline::distance(&margin, at) > 0.0;
     let covered = (0..PLACES).filter(|index| {
         let [u, v] = r2([0.5; 2], *index);
         // As in `texture.rs`: the twig runs along the diagonal.
@@ -22,7 +26,7 @@ pub(in crate::tree) fn card_cover(leaf: &Leaf, seed: u64) -> f32 {
         leaves.iter().any(|leaf| {
             let middle = leaf.root + leaf.direction * (0.5 * leaf.length);
             let reach = (blade_reach + leaf.bend.abs()) * leaf.length;
-            point.distance_squared(middle) <= reach * reach && outline::distance(&margin, leaf.local(point)) > 0.0
+            point.distance_squared(middle) <= reach * reach && covers(leaf.local(point))
         })
     });
     covered.count() as f32 / PLACES as f32

@@ -1,4 +1,4 @@
-//! Articulated bodies: what is beyond a hinge of a tree that sways, as one body. `resonance.rs` tells the theory.
+//! What is beyond a hinge of a tree that sways, as one body. `resonance.rs` tells the theory.
 
 use super::{
     branches::Lump,
@@ -39,8 +39,9 @@ pub(super) struct Piece {
     inertia: [f32; 6],
     drag: f32,
     drag_moment: Vec3,
-    /// The first of the branches that it bears.
+    /// The first of the branches that it bears and that bear others, and the first of those that do not.
     pub first_child: Option<u32>,
+    pub first_twig: Option<u32>,
 }
 
 impl Piece {
@@ -59,6 +60,7 @@ impl Piece {
             drag: 0.0,
             drag_moment: Vec3::ZERO,
             first_child: None,
+            first_twig: None,
         }
     }
 
@@ -76,6 +78,7 @@ impl Piece {
 }
 
 impl Articulated {
+    #[inline]
     pub fn add(&mut self, other: &Self) {
         for row in 0..3 {
             add(&mut self.force[row], &other.force[row]);
@@ -88,7 +91,26 @@ impl Articulated {
         }
     }
 
+    /// Adds what bend adds to a rigid body, by its motion and by the wind, times a factor each (`twig.rs`).
+    #[inline]
+    pub fn add_bend(&mut self, by_motion: &[[f32; 6]; 6], by_wind: &[[f32; 6]; 2], motion: Four, wind: Four) {
+        for row in 0..3 {
+            for column in 0..3 {
+                self.force[row][column] -= motion * by_motion[row][column];
+                self.coupling[row][column] -= motion * by_motion[row][3 + column];
+                self.turn[row][column] -= motion * by_motion[3 + row][3 + column];
+            }
+        }
+        for ([force, moment], by_wind) in self.loads.iter_mut().zip(by_wind) {
+            for n in 0..3 {
+                force[n] += wind * by_wind[n];
+                moment[n] += wind * by_wind[3 + n];
+            }
+        }
+    }
+
     /// Tells the same about a place from which this one's is an `arm` away.
+    #[inline]
     pub fn move_back(&mut self, arm: Vec3) {
         // Columns of the old coupling and of the new one, both crossed with the arm.
         let before = transposed(&self.coupling).map(|column| cross(arm, &column));
@@ -107,6 +129,7 @@ impl Articulated {
     }
 
     /// What weight adds to the stiffness.
+    #[inline]
     pub fn weigh(&mut self, piece: &Piece) {
         for row in 0..3 {
             for column in 0..3 {
@@ -116,6 +139,7 @@ impl Articulated {
     }
 
     /// How the turn of the piece before the hinge is coupled with that of the hinge, by weight as well.
+    #[inline]
     pub fn coupled(&self, piece: &Piece) -> Matrix {
         let half = piece.half_moment;
         let halves = [[0.0, -half.z, half.y], [half.z, 0.0, -half.x], [-half.y, half.x, 0.0]];
@@ -129,6 +153,7 @@ impl Articulated {
     }
 
     /// Turn of the hinge under a moment.
+    #[inline]
     pub fn compliance(&self, piece: &Piece) -> Matrix {
         let (along, bend, twist) = (piece.direction.to_array(), piece.bend, piece.twist - piece.bend);
         let mut stiff = self.turn;
@@ -142,6 +167,7 @@ impl Articulated {
     }
 
     /// Lets the body turn about the hinge that bears it, given the hinge's compliance and what couples it.
+    #[inline]
     pub fn release(&mut self, compliance: &Matrix, coupled: &Matrix) {
         let by_force = times_transposed(&self.coupling, compliance);
         let by_turn = times_transposed(coupled, compliance);
@@ -160,6 +186,7 @@ impl Articulated {
     }
 
     /// The same for a piece without weight, for which `1 - R S = K S`.
+    #[inline]
     pub fn release_weightless(&mut self, piece: &Piece) {
         let compliance = self.compliance(piece);
         let (along, bend, twist) = (piece.direction.to_array(), piece.bend, piece.twist - piece.bend);
@@ -188,6 +215,7 @@ impl Articulated {
 
 impl Piece {
     /// Adds the inertia and the drag of what it bears itself.
+    #[inline]
     pub fn add_to(&self, body: &mut Articulated, z: Four) {
         let [xx, yy, zz, xy, xz, yz] = self.inertia;
         let m = self.moment;
@@ -226,6 +254,7 @@ impl Probe {
         Self { wind, moved: Four::ZERO, force: constant(wind), moment: constant(arm.cross(wind)) }
     }
 
+    #[inline]
     pub fn release(&mut self, body: &Articulated, compliance: &Matrix, coupled: &Matrix) {
         let load: Vector =
             std::array::from_fn(|n| body.loads[0][1][n] * self.wind.x + body.loads[1][1][n] * self.wind.z);

@@ -24,8 +24,9 @@ pub(super) struct Lump {
     pub mass_kg: f64,
     /// Drag for one m^2/s^2 of wind pressure |u|u where it is, kg/m.
     pub drag_kg_m: f64,
-    /// Where it is, in the tree's coordinates, m.
+    /// Where it is, in the tree's coordinates, m, and the natural logarithm of its height.
     pub at: Vec3,
+    pub log_height: f64,
     /// Whether it is of leaves, which may be shed.
     pub is_leaf: bool,
     /// Whether the branch bears it itself, and not a branch that it carries.
@@ -104,9 +105,11 @@ pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> LoadedTree {
             branches[carrier.branch].bears = true;
         }
     }
+    reserve_lumps(&mut branches, skeleton, |beam| places[beam as usize].0);
     let mut tree = LoadedTree { branches, branch_of_slot: Vec::new(), first_slots: Vec::new() };
     let put_on = |tree: &mut LoadedTree, mut carrier: u32, mut attach: f32, piece: Piece| {
         let Piece { at, mass_kg, drag_kg_m, is_leaf } = piece;
+        let log_height = f64::from(at.y).ln();
         let mut is_own = true;
         loop {
             let beam = &skeleton.beams[carrier as usize];
@@ -124,6 +127,7 @@ pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> LoadedTree {
                 mass_kg,
                 drag_kg_m,
                 at,
+                log_height,
                 is_leaf,
                 is_own,
                 slot,
@@ -144,6 +148,19 @@ pub(super) fn branches(species: &Species, skeleton: &Skeleton) -> LoadedTree {
         branch.hinge(species, skeleton);
     }
     tree
+}
+
+/// Makes room for the lumps of all branches, given the branch of each beam.
+fn reserve_lumps(branches: &mut [LoadedBranch], skeleton: &Skeleton, branch_of: impl Fn(u32) -> usize) {
+    let mut counts: Vec<usize> = branches.iter().map(|branch| BEAM_LUMPS.len() * branch.beams.len()).collect();
+    skeleton.clusters.iter().for_each(|cluster| counts[branch_of(cluster.beam)] += 1);
+    // Branches come after those that carry them.
+    for (index, branch) in branches.iter_mut().enumerate().rev() {
+        branch.lumps.reserve_exact(counts[index]);
+        if let Some(carrier) = branch.carrier {
+            counts[carrier.branch] += counts[index];
+        }
+    }
 }
 
 impl LoadedBranch {

@@ -14,10 +14,11 @@
 
 use super::{
     branches::{LoadedBranch, LoadedTree},
+    hinges::outer,
     resonance::resonances_hz,
     response::BranchResponse,
 };
-use bevy::math::{DVec3, Vec3};
+use bevy::math::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
 /// A branch's natural frequency, and what drag adds to its damping.
@@ -67,7 +68,9 @@ fn sums(
     bends: impl Fn(usize, usize) -> bool,
 ) -> Vec<Sums> {
     let directions: Vec<DVec3> = branches.iter().map(|branch| branch.direction.as_dvec3()).collect();
-    let axes: Vec<[DVec3; 2]> = branches.iter().map(|branch| axes_across(branch.direction)).collect();
+    // Of an axis the part across each branch.
+    let across: Vec<DMat3> =
+        directions.iter().map(|direction| DMat3::IDENTITY - outer(*direction, *direction)).collect();
     let mut sums = vec![Sums::default(); branches.len()];
     for ends in tree.first_slots.windows(2) {
         let (first, end) = (ends[0] as usize, ends[1] as usize);
@@ -77,17 +80,17 @@ fn sums(
         }
         for last in first..end {
             let carrier = tree.branch_of_slot[last] as usize;
-            for axis in axes[carrier] {
-                let moved = |slot: usize| {
-                    let branch = tree.branch_of_slot[slot] as usize;
-                    let share = if bends(branch, carrier) { slots[slot].deflection_m } else { 0.0 };
-                    share * axis.reject_from(directions[branch])
-                };
-                let moved: DVec3 = (first..=last).map(moved).sum();
-                let sum = &mut sums[carrier];
-                sum.inertia += mass_kg * moved.length_squared();
-                sum.drag += drag_kg_m * moved.length_squared();
-            }
+            let bent = |slot: usize| {
+                let branch = tree.branch_of_slot[slot] as usize;
+                let share = if bends(branch, carrier) { slots[slot].deflection_m } else { 0.0 };
+                across[branch] * share
+            };
+            let moved: DMat3 = (first..=last).map(bent).sum();
+            // Of both axes across the carrier: the square of all columns without that along it.
+            let all: f64 = moved.to_cols_array_2d().map(|column| DVec3::from(column).length_squared()).iter().sum();
+            let square = all - (moved * directions[carrier]).length_squared();
+            sums[carrier].inertia += mass_kg * square;
+            sums[carrier].drag += drag_kg_m * square;
         }
     }
     sums
@@ -110,10 +113,4 @@ fn slots(tree: &LoadedTree, branches: &[LoadedBranch], responses: &[BranchRespon
         }
     }
     slots
-}
-
-/// Two axes across a branch, at right angles.
-fn axes_across(direction: Vec3) -> [DVec3; 2] {
-    let (first, second) = direction.any_orthonormal_pair();
-    [first.as_dvec3(), second.as_dvec3()]
 }

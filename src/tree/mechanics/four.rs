@@ -18,11 +18,13 @@ pub(super) type Matrix = [Vector; 3];
 impl Four {
     pub const ZERO: Self = Self { re: Vec4::ZERO, im: Vec4::ZERO };
 
+    #[inline]
     pub fn real(value: f32) -> Self {
         Self { re: Vec4::splat(value), im: Vec4::ZERO }
     }
 
-    fn recip(self) -> Self {
+    #[inline]
+    pub fn recip(self) -> Self {
         // Squares of determinants would leave the range of f32.
         let scale = self.re.abs().max(self.im.abs()).recip();
         let (re, im) = (self.re * scale, self.im * scale);
@@ -88,6 +90,7 @@ pub(super) fn cross(a: Vec3, b: &Vector) -> Vector {
     [b[2] * a.y - b[1] * a.z, b[0] * a.z - b[2] * a.x, b[1] * a.x - b[0] * a.y]
 }
 
+#[inline]
 pub(super) fn transposed(matrix: &Matrix) -> Matrix {
     std::array::from_fn(|row| std::array::from_fn(|column| matrix[column][row]))
 }
@@ -98,11 +101,13 @@ pub(super) fn times(matrix: &Matrix, vector: &Vector) -> Vector {
 }
 
 /// `a b^T`.
+#[inline]
 pub(super) fn times_transposed(a: &Matrix, b: &Matrix) -> Matrix {
     std::array::from_fn(|row| std::array::from_fn(|column| dot(&a[row], &b[column])))
 }
 
 /// `a b^T` where that is symmetric.
+#[inline]
 pub(super) fn symmetric_times_transposed(a: &Matrix, b: &Matrix) -> Matrix {
     let [xx, xy, xz] = std::array::from_fn(|column| dot(&a[0], &b[column]));
     let [yy, yz] = [1, 2].map(|column| dot(&a[1], &b[column]));
@@ -111,6 +116,7 @@ pub(super) fn symmetric_times_transposed(a: &Matrix, b: &Matrix) -> Matrix {
 }
 
 /// The inverse of a symmetric matrix.
+#[inline]
 pub(super) fn inverse(m: &Matrix) -> Matrix {
     let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = *m;
     let (a, b, c) = (yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
@@ -120,14 +126,17 @@ pub(super) fn inverse(m: &Matrix) -> Matrix {
     [[a, b, c], [b, d, e], [c, e, f]]
 }
 
+#[inline]
 pub(super) fn add<const N: usize>(a: &mut [Four; N], b: &[Four; N]) {
     a.iter_mut().zip(b).for_each(|(a, b)| *a += *b);
 }
 
+#[inline]
 pub(super) fn subtract<const N: usize>(a: &mut [Four; N], b: &[Four; N]) {
     a.iter_mut().zip(b).for_each(|(a, b)| *a -= *b);
 }
 
+#[inline]
 pub(super) fn subtracted(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|n| a[n] - b[n])
 }

@@ -25,6 +25,7 @@
 //! (`dynamics::beam`). All this is worked out twice, with leaves and without.
 
 mod articulated;
+mod bodies;
 mod branches;
 mod composite;
 mod four;
@@ -33,6 +34,7 @@ mod resonance;
 mod response;
 mod skew;
 mod statics;
+mod twig;
 
 pub(crate) use branches::{Piece, tree_pieces};
 

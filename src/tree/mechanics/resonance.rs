@@ -19,22 +19,16 @@
 //!
 //! So one pass from the twigs to the ground tells how all branches of a tree answer at a frequency, each of them held fast where it
 //! grows: the deflection of a place at two thirds of its length is a linear function of the motion of the piece that bears it,
-//! and goes down the branch by the same rules as the loads. Work grows with the number of beams.
+//! and goes down the branch by the same rules as the loads. Work grows with the number of beams. Branches that bear none, which are most of
+//! them, are not worked out anew for each frequency (`twig.rs`).
 //!
 //! Resonance is where the deflection lags behind the wind most, in the sense of its imaginary part: every mode adds its share of the static
 //! deflection there, over the width of a damped resonance. Branches as fast as the one that carries them divide its mode in many;
 //! that is one peak again. Of two peaks, as of a stem that is bent and sways along two axes, the one counts by which gusts move it
 //! further: their amplitude is as `sqrt(f S(f)) ~ f^(-1/3)`, with Kolmogorov's spectrum `S ~ f^(-5/3)`.
 
-use super::{
-    articulated::{Articulated, Piece, Probe},
-    branches::LoadedBranch,
-    four::{Four, add, cross},
-    hinges::Hinge,
-    response::BranchResponse,
-    statics::{Beyond, PieceWeight, winds},
-};
-use bevy::math::{DVec3, Vec3, Vec4};
+use super::{articulated::Articulated, bodies::Bodies, branches::LoadedBranch, four::Four, response::BranchResponse};
+use bevy::math::Vec4;
 use std::f64::consts::TAU;
 
 /// Damping ratio of the peaks, that of branches in a moderate wind: what is nearer together than some 15% is one peak.
@@ -47,30 +41,27 @@ const FOURS: usize = 4;
 const FREQUENCIES: usize = 4 * FOURS;
 /// Amplitude of gusts as a power of their frequency.
 const GUST_EXPONENT: f64 = -1.0 / 3.0;
-/// Where on a branch its motion is taken, as a share of its length.
-const SENSOR: f64 = 2.0 / 3.0;
 
-/// The natural frequency of each branch, Hz; none where no peak is within the frequencies that are tried.
+/// The natural frequency of each branch, Hz; none of those that bear no other, and where no peak is within the frequencies that are tried.
 pub(super) fn resonances_hz(branches: &[LoadedBranch], responses: &[BranchResponse]) -> Vec<Option<f64>> {
     let bodies = Bodies::new(branches);
     let lowest_hz = lowest_hz(branches, responses);
-    let mut lags: Vec<[f32; FREQUENCIES]> = vec![[0.0; FREQUENCIES]; branches.len()];
-    let mut articulated = vec![Articulated::default(); branches.len()];
+    let mut lags = vec![[0.0; FREQUENCIES]; bodies.len()];
+    let mut articulated = vec![Articulated::default(); bodies.len()];
     for four in 0..FOURS {
         let z = stiffness_ratio(lowest_hz, four);
-        for (index, branch) in branches.iter().enumerate().rev() {
-            if branch.bears {
-                let answer = bodies.answer(index, z, &articulated);
-                // Hinges of the stiffness K (1 + 2 i zeta) in place of K.
-                let lag = answer.re * (2.0 * DAMPING_RATIO) - answer.im;
-                lags[index][4 * four..4 * four + 4].copy_from_slice(&lag.to_array());
-            }
-            if branch.carrier.is_some() {
-                articulated[index] = bodies.carried(index, z, &articulated);
-            }
+        for (index, lags) in lags.iter_mut().enumerate().rev() {
+            let answer = bodies.sway(index, z, &mut articulated);
+            // Hinges of the stiffness K (1 + 2 i zeta) in place of K.
+            let lag = answer.re * (2.0 * DAMPING_RATIO) - answer.im;
+            lags[4 * four..4 * four + 4].copy_from_slice(&lag.to_array());
         }
     }
-    lags.iter().map(|lags| Some(lowest_hz * peak(lags)?)).collect()
+    let mut frequencies_hz = vec![None; branches.len()];
+    for (lags, branch) in lags.iter().zip(bodies.branches()) {
+        frequencies_hz[branch] = peak(lags).map(|by_lowest| lowest_hz * by_lowest);
+    }
+    frequencies_hz
 }
 
 /// `z` at four frequencies.
@@ -130,132 +121,6 @@ fn mode_near(lags: &[f32; FREQUENCIES], index: usize) -> Mode {
     let there = y[0] + (slopes[0] + curvature * (square - x[1])) * (square - x[0]);
     let frequency = square.sqrt();
     Mode { frequency, motion: frequency / there * frequency.powf(GUST_EXPONENT) }
-}
-
-/// A branch's place where it grows, its pieces and its sensor.
-struct Body {
-    first: usize,
-    end: usize,
-    /// From the hinge before it, if another branch bears it.
-    arm: Vec3,
-    next_sibling: Option<u32>,
-    sensor: usize,
-    sensor_arm: Vec3,
-    winds: [Vec3; 2],
-}
-
-struct Bodies {
-    bodies: Vec<Body>,
-    pieces: Vec<Piece>,
-}
-
-impl Bodies {
-    fn new(branches: &[LoadedBranch]) -> Self {
-        let mut bodies: Vec<Body> = Vec::with_capacity(branches.len());
-        let mut pieces: Vec<Piece> = Vec::new();
-        for branch in branches {
-            let first = pieces.len();
-            pieces.extend(pieces_of(branch));
-            let sensor_m = SENSOR * branch.length_m;
-            let sensor = piece_at(&branch.swaying_hinges, sensor_m);
-            let sensor_arm = branch
-                .swaying_hinges
-                .get(sensor)
-                .map_or(Vec3::ZERO, |hinge| (hinge.direction * (sensor_m - hinge.along_m)).as_vec3());
-            let mut ways = winds(branch).into_iter();
-            let winds = std::array::from_fn(|_| ways.next().unwrap_or(DVec3::ZERO).as_vec3());
-            let mut body = Body {
-                first,
-                end: pieces.len(),
-                arm: Vec3::ZERO,
-                next_sibling: None,
-                sensor: first + sensor,
-                sensor_arm,
-                winds,
-            };
-            if let Some(carrier) = branch.carrier {
-                let bearer =
-                    bodies[carrier.branch].first + piece_at(&branches[carrier.branch].swaying_hinges, carrier.attach_m);
-                body.arm = (branch.base - pieces[bearer].at).as_vec3();
-                body.next_sibling = pieces[bearer].first_child.replace(bodies.len() as u32);
-            }
-            bodies.push(body);
-        }
-        Self { bodies, pieces }
-    }
-
-    /// A branch as one body about the hinge that bears it, as the branch that carries it feels it.
-    fn carried(&self, index: usize, z: Four, articulated: &[Articulated]) -> Articulated {
-        let body = &self.bodies[index];
-        let mut beyond = Articulated::default();
-        for piece in self.pieces[body.first..body.end].iter().rev() {
-            self.load(&mut beyond, piece, z, articulated);
-            beyond.release_weightless(piece);
-            beyond.move_back(piece.arm);
-        }
-        beyond.move_back(body.arm);
-        beyond
-    }
-
-    /// How the sensor of a branch moves along the wind while its root is held.
-    fn answer(&self, index: usize, z: Four, articulated: &[Articulated]) -> Four {
-        let body = &self.bodies[index];
-        let mut beyond = Articulated::default();
-        let mut probes: Option<[Probe; 2]> = None;
-        for index in (body.first..body.end).rev() {
-            let piece = &self.pieces[index];
-            self.load(&mut beyond, piece, z, articulated);
-            if index == body.sensor {
-                probes = Some(body.winds.map(|wind| Probe::new(wind, body.sensor_arm)));
-            }
-            beyond.weigh(piece);
-            let coupled = beyond.coupled(piece);
-            let compliance = beyond.compliance(piece);
-            for probe in probes.iter_mut().flatten() {
-                probe.release(&beyond, &compliance, &coupled);
-            }
-            beyond.release(&compliance, &coupled);
-            beyond.move_back(piece.arm);
-            for probe in probes.iter_mut().flatten() {
-                add(&mut probe.moment, &cross(piece.arm, &probe.force));
-            }
-        }
-        probes.iter().flatten().fold(Four::ZERO, |sum, probe| sum + probe.moved)
-    }
-
-    /// Adds what a piece bears.
-    fn load(&self, beyond: &mut Articulated, piece: &Piece, z: Four, articulated: &[Articulated]) {
-        piece.add_to(beyond, z);
-        let mut child = piece.first_child;
-        while let Some(branch) = child {
-            beyond.add(&articulated[branch as usize]);
-            child = self.bodies[branch as usize].next_sibling;
-        }
-    }
-}
-
-/// The piece at a place: the last hinge before it. What is before the first hinge counts as beyond it.
-fn piece_at(hinges: &[Hinge], along_m: f64) -> usize {
-    hinges.partition_point(|hinge| hinge.along_m < along_m).saturating_sub(1)
-}
-
-fn pieces_of(branch: &LoadedBranch) -> Vec<Piece> {
-    let hinges = &branch.swaying_hinges;
-    let weights = PieceWeight::of(hinges, &Beyond::sums(branch, hinges, |lump| [lump.mass_kg]));
-    let mut before = branch.base;
-    let mut pieces: Vec<Piece> = hinges
-        .iter()
-        .zip(weights)
-        .map(|(hinge, weight)| {
-            let piece = Piece::new(hinge, before, weight);
-            before = hinge.at;
-            piece
-        })
-        .collect();
-    for lump in branch.lumps.iter().filter(|lump| lump.is_own) {
-        pieces[piece_at(&branch.swaying_hinges, lump.attach_m)].bear(lump);
-    }
-    pieces
 }
 
 #[cfg(test)]

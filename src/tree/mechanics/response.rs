@@ -175,7 +175,7 @@ const MOMENTS: usize = 8;
 /// coordinates, the square of the horizontal ones, the square of the height.
 fn load_moments(lump: &Lump) -> [f64; MOMENTS] {
     let [x, y, z] = lump.at.to_array().map(f64::from);
-    let [open, rough] = ROUGHNESS_M.map(|roughness_m| (y / roughness_m).max(1.0).ln().powi(2));
+    let [open, rough] = ROUGHNESS_M.map(|roughness_m| (lump.log_height - roughness_m.ln()).max(0.0).powi(2));
     [1.0, open, rough, x, y, z, x * x + z * z, y * y].map(|moment| lump.drag_kg_m * moment)
 }
 

@@ -126,12 +126,14 @@ pub(super) fn stands(hinges: &[Hinge], weights: &[PieceWeight], times: f64) -> b
 /// The tip's deflection under the drag, by what it would be without weight.
 pub(super) fn softening(hinges: &[Hinge], drag: &[Beyond<1>], mass: &[Beyond<1>], tip: DVec3, winds: &[DVec3]) -> f64 {
     let weights = PieceWeight::of(hinges, mass);
-    let deflection = |gravity: f64| -> Option<f64> {
-        let chain = Chain::new(hinges, &weights, gravity)?;
-        Some(winds.iter().map(|wind| chain.tip_deflection(hinges, drag, tip, *wind)).sum())
+    let Some(chain) = Chain::new(hinges, &weights, 1.0) else { return 1.0 };
+    let weighed: f64 = winds.iter().map(|wind| chain.tip_deflection(hinges, drag, tip, *wind)).sum();
+    let by_wind = |wind: &DVec3| {
+        let by_hinge = |(hinge, drag): (&Hinge, &Beyond<1>)| drag.about(hinge.at, 0).dot(influence(hinge, tip, *wind));
+        hinges.iter().zip(drag).map(by_hinge).sum::<f64>()
     };
-    let softening = deflection(1.0).zip(deflection(0.0)).map(|(weighed, weightless)| weighed / weightless);
-    softening.filter(|softening| softening.is_finite() && *softening > 0.0).unwrap_or(1.0)
+    let softening = weighed / winds.iter().map(by_wind).sum::<f64>();
+    if softening.is_finite() && softening > 0.0 { softening } else { 1.0 }
 }
 
 /// The pieces' turns, eliminated from the tip to the root.

@@ -78,6 +78,7 @@ fn lump(attach_m: f64, mass_kg: f64, at: DVec3) -> Lump {
         mass_kg,
         drag_kg_m: DRAG_KG_M,
         at: at.as_vec3(),
+        log_height: at.y.ln(),
         is_leaf: false,
         is_own: true,
         slot: 0,

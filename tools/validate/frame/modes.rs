@@ -79,6 +79,16 @@ fn scale(vector: &mut [Vector6<f64>], factor: f64) {
 /// The resonance at the probe: of all groups of modes within [`PEAK_WIDTH`] of each other the one with the greatest share, and its mean
 /// frequency. Branches as fast as their trunk divide its mode in many, which damping makes one peak.
 pub fn peak(modes: &[Mode]) -> Mode {
+    strongest(modes, |peak| peak.share)
+}
+
+/// The one of these groups that moves the probe furthest in gusts, whose amplitude at a frequency `f` is as `sqrt(f S(f)) ~ f^(-1/3)`
+/// (Kolmogorov's spectrum).
+pub fn gust_peak(modes: &[Mode]) -> Mode {
+    strongest(modes, |peak| peak.share / peak.frequency_hz.cbrt())
+}
+
+fn strongest(modes: &[Mode], motion: impl Fn(&Mode) -> f64) -> Mode {
     let near = |middle: &Mode| {
         let (mut share, mut weighted) = (0.0, 0.0);
         for mode in modes.iter().filter(|mode| (mode.frequency_hz / middle.frequency_hz).ln().abs() < PEAK_WIDTH) {
@@ -87,7 +97,8 @@ pub fn peak(modes: &[Mode]) -> Mode {
         }
         Mode { frequency_hz: weighted / share, share }
     };
-    modes.iter().map(near).max_by(|a, b| a.share.total_cmp(&b.share)).expect("a load excites a mode")
+    let peaks = modes.iter().map(near).filter(|peak| peak.frequency_hz > 0.0);
+    peaks.max_by(|a, b| motion(a).total_cmp(&motion(b))).expect("a load excites a mode")
 }
 
 /// The frequency at which the probe begins to resonate, Hz. Under a load that swings slowly, at `w`, its deflection is the

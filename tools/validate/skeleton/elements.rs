@@ -11,9 +11,10 @@ use nalgebra::{Vector3, Vector6};
 pub const ROUGHNESS_M: f64 = 0.3;
 pub const REFERENCE_HEIGHT_M: f64 = 10.0;
 
-/// The resonance of a node in a uniform wind.
-pub fn peak(tree: &TreeFrame, node: usize, wind: Vector3<f64>) -> Mode {
-    modes::peak(&modes::modes(&tree.frame, GRAVITY_M_S2, &wind_load(tree, wind), (node, wind)))
+/// The resonance of a node in a uniform wind: that of the greatest share, and that which moves it furthest in gusts.
+pub fn peaks(tree: &TreeFrame, node: usize, wind: Vector3<f64>) -> [Mode; 2] {
+    let modes = modes::modes(&tree.frame, GRAVITY_M_S2, &wind_load(tree, wind), (node, wind));
+    [modes::peak(&modes), modes::gust_peak(&modes)]
 }
 
 /// The frequency at which the node begins to resonate in a uniform wind, Hz.
