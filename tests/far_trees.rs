@@ -50,7 +50,10 @@ fn picture(
         Projection::Perspective(PerspectiveProjection { fov: 0.45, ..default() }),
         Transform::from_xyz(0.0, 12.0, 0.0).looking_at(Vec3::new(0.0, 9.0, -250.0), Vec3::Y),
     ));
-    let ready = support::update_until(&mut app, capture::forests_are_drawn);
+    // On a loaded machine the forest may be there before its response to the wind is.
+    let ready = support::update_until(&mut app, |world| {
+        capture::forests_are_drawn(world) && world.resource::<ActiveSway>().is_ready()
+    });
     assert!(ready, "the forest was not drawn in time");
     // Meshes and pipelines of the latest trees take some frames.
     (0..6).for_each(|_| capture::step(&mut app));
