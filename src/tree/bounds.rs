@@ -83,8 +83,7 @@ pub(super) fn bounds_by_step(beams: &[BeamDynamics], reaches_m: &[f32], limit: S
     for (beam, reach_m) in beams.iter().zip(reaches_m) {
         let own = Carried::new(beam, beams, &carried, &pressures);
         for s in [0.0, 0.5, 1.0] {
-            let moved_m = own.moved_at(beam, s);
-            let place = beam.base + beam.direction * (beam.length_m * s);
+            let (place, moved_m) = own.at(beam, s);
             for (bounds, moved_m) in bounds.iter_mut().zip(moved_m) {
                 bounds.include(place, moved_m + reach_m);
             }
@@ -112,23 +111,21 @@ impl Carried {
             return Self { about: beam.base, moved_m: [0.0; STEPS], turned_rad: [0.0; STEPS], tip_rad };
         };
         let (bearer, s) = (&beams[beam.parent as usize], beam.attach);
+        let (about, moved_m) = parent.at(bearer, s);
         let [h, ..] = mode_shape(s);
-        Self {
-            about: bearer.base + bearer.direction * (bearer.length_m * s),
-            moved_m: parent.moved_at(bearer, s),
-            turned_rad: std::array::from_fn(|step| parent.turned_rad[step] + parent.tip_rad[step] * h),
-            tip_rad,
-        }
+        let turned_rad = std::array::from_fn(|step| parent.turned_rad[step] + parent.tip_rad[step] * h);
+        Self { about, moved_m, turned_rad, tip_rad }
     }
 
-    /// How far the place at `s` of the axis is moved at most, m.
-    fn moved_at(&self, beam: &BeamDynamics, s: f32) -> BySteps {
+    /// The place at `s` of the axis, and how far that is moved at most, m.
+    fn at(&self, beam: &BeamDynamics, s: f32) -> (Vec3, BySteps) {
         let [_, h1, ..] = mode_shape(s);
         let place = beam.base + beam.direction * (beam.length_m * s);
         let (distance_m, by_tip_m) = (place.distance(self.about), beam.length_m * h1);
-        std::array::from_fn(|step| {
+        let moved_m = std::array::from_fn(|step| {
             self.moved_m[step] + self.turned_rad[step] * distance_m + by_tip_m * self.tip_rad[step]
-        })
+        });
+        (place, moved_m)
     }
 }
 

@@ -98,11 +98,11 @@ impl Bodies {
         let body = &self.bodies[index];
         let (mut held, mut carried) = (Articulated::default(), Articulated::default());
         let mut probes: Option<[Probe; 2]> = None;
-        for index in (body.first..body.end).rev() {
-            let piece = &self.pieces[index];
+        for at in (body.first..body.end).rev() {
+            let piece = &self.pieces[at];
             let borne = self.borne(piece, z, articulated);
             held.add(&borne);
-            if index == body.sensor {
+            if at == body.sensor {
                 probes = Some(body.winds.map(|wind| Probe::new(wind, body.sensor_arm)));
             }
             held.weigh(piece);

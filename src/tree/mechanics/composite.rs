@@ -87,7 +87,7 @@ fn sums(
             };
             let moved: DMat3 = (first..=last).map(bent).sum();
             // Of both axes across the carrier: the square of all columns without that along it.
-            let all: f64 = moved.to_cols_array_2d().map(|column| DVec3::from(column).length_squared()).iter().sum();
+            let all: f64 = moved.to_cols_array().iter().map(|component| component * component).sum();
             let square = all - (moved * directions[carrier]).length_squared();
             sums[carrier].inertia += mass_kg * square;
             sums[carrier].drag += drag_kg_m * square;

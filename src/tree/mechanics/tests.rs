@@ -51,7 +51,7 @@ fn frequencies_fall_while_a_fir_grows_up() {
 }
 
 /// A branch of hinges and lumps, from the origin to its tip; a stem if nothing carries it.
-fn branch(hinges: Vec<Hinge>, lumps: Vec<Lump>, tip: DVec3) -> LoadedBranch {
+pub(super) fn branch(hinges: Vec<Hinge>, lumps: Vec<Lump>, tip: DVec3) -> LoadedBranch {
     LoadedBranch {
         beams: vec![0],
         lumps,
@@ -70,7 +70,7 @@ fn branch(hinges: Vec<Hinge>, lumps: Vec<Lump>, tip: DVec3) -> LoadedBranch {
 /// Drag of a lump, kg/m.
 const DRAG_KG_M: f64 = 0.01;
 
-fn lump(attach_m: f64, mass_kg: f64, at: DVec3) -> Lump {
+pub(super) fn lump(attach_m: f64, mass_kg: f64, at: DVec3) -> Lump {
     Lump {
         attach_m,
         arm_m: 0.0,
@@ -82,6 +82,19 @@ fn lump(attach_m: f64, mass_kg: f64, at: DVec3) -> Lump {
         is_leaf: false,
         is_own: true,
         slot: 0,
+    }
+}
+
+/// A hinge at the root of a branch that is rigid beyond it.
+pub(super) fn spring(at: DVec3, direction: DVec3, stiffness_nm: f64) -> Hinge {
+    Hinge {
+        along_m: 0.0,
+        at,
+        direction,
+        beam: 0,
+        radius_m: 0.1,
+        bend_compliance: 1.0 / stiffness_nm,
+        twist_compliance: 1.0 / stiffness_nm,
     }
 }
 
@@ -159,15 +172,7 @@ fn a_rigid_pole_on_its_roots_has_the_frequency_of_an_inverted_pendulum() {
             let along_m = (f64::from(index) + 0.5) / f64::from(count) * length_m;
             lump(along_m, mass_kg / f64::from(count), upright * along_m)
         });
-        let root = Hinge {
-            along_m: 0.0,
-            at: DVec3::ZERO,
-            direction: upright,
-            beam: 0,
-            radius_m: 0.1,
-            bend_compliance: 1.0 / stiffness,
-            twist_compliance: 1.0 / stiffness,
-        };
+        let root = spring(DVec3::ZERO, upright, stiffness);
         let pole = branch(vec![root], lumps.collect(), upright * length_m);
         let spring = stiffness - upright.y * mass_kg * GRAVITY_M_S2 * length_m / 2.0;
         let expected_hz = (spring / (mass_kg * length_m * length_m / 3.0)).sqrt() / TAU;

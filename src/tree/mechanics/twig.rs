@@ -123,11 +123,15 @@ fn inertia_of(hinges: &[Loaded], turns: &[DVec3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tree::mechanics::{branches::Carrier, resonance::resonances_hz, response::BranchResponse};
-    use bevy::math::Vec3;
+    use crate::tree::mechanics::{
+        branches::Carrier,
+        resonance::resonances_hz,
+        response::BranchResponse,
+        tests::{branch, lump, spring},
+    };
     use std::f64::consts::TAU;
 
-    /// An upright rod without mass on a hinge at its root, with these lumps, each a height and a mass.
+    /// An upright rod without mass on a hinge at its root, with these lumps, each a height and a mass. All but the first are of what it bears.
     fn rod(
         root_m: f64,
         length_m: f64,
@@ -136,39 +140,18 @@ mod tests {
         carrier: Option<Carrier>,
     ) -> LoadedBranch {
         let at = |height_m: f64| DVec3::Y * height_m;
-        let lump = |(slot, &(height_m, mass_kg)): (u32, &(f64, f64))| Lump {
-            attach_m: (height_m - root_m).min(length_m),
+        let lumps = (0..).zip(lumps).map(|(slot, &(height_m, mass_kg))| Lump {
             arm_m: (height_m - root_m - length_m).max(0.0),
-            beside_m: 0.0,
-            mass_kg,
-            drag_kg_m: 0.01,
-            at: at(height_m).as_vec3(),
-            log_height: height_m.ln(),
-            is_leaf: false,
             is_own: slot == 0,
             slot,
-        };
-        let hinge = Hinge {
-            along_m: 0.0,
-            at: at(root_m),
-            direction: DVec3::Y,
-            beam: 0,
-            radius_m: 0.1,
-            bend_compliance: 1.0 / stiffness_nm,
-            twist_compliance: 1.0 / stiffness_nm,
-        };
+            ..lump((height_m - root_m).min(length_m), mass_kg, at(height_m))
+        });
         LoadedBranch {
-            beams: vec![0],
-            lumps: (0..).zip(lumps).map(lump).collect(),
-            hinges: vec![hinge],
-            swaying_hinges: vec![hinge],
-            stiff_axes: vec![Vec3::ZERO],
-            direction: Vec3::Y,
             base: at(root_m),
-            tip: at(root_m + length_m),
             length_m,
             bears: carrier.is_none(),
             carrier,
+            ..branch(vec![spring(at(root_m), DVec3::Y, stiffness_nm)], lumps.collect(), at(root_m + length_m))
         }
     }
 

@@ -85,7 +85,10 @@ pub fn peak(modes: &[Mode]) -> Mode {
 /// The one of these groups that moves the probe furthest in gusts, whose amplitude at a frequency `f` is as `sqrt(f S(f)) ~ f^(-1/3)`
 /// (Kolmogorov's spectrum).
 pub fn gust_peak(modes: &[Mode]) -> Mode {
-    strongest(modes, |peak| peak.share / peak.frequency_hz.cbrt())
+    strongest(modes, |peak| {
+        // Groups whose shares all but cancel have no mean frequency.
+        if peak.frequency_hz > 0.0 { peak.share / peak.frequency_hz.cbrt() } else { f64::NEG_INFINITY }
+    })
 }
 
 fn strongest(modes: &[Mode], motion: impl Fn(&Mode) -> f64) -> Mode {
@@ -97,8 +100,7 @@ fn strongest(modes: &[Mode], motion: impl Fn(&Mode) -> f64) -> Mode {
         }
         Mode { frequency_hz: weighted / share, share }
     };
-    let peaks = modes.iter().map(near).filter(|peak| peak.frequency_hz > 0.0);
-    peaks.max_by(|a, b| motion(a).total_cmp(&motion(b))).expect("a load excites a mode")
+    modes.iter().map(near).max_by(|a, b| motion(a).total_cmp(&motion(b))).expect("a load excites a mode")
 }
 
 /// The frequency at which the probe begins to resonate, Hz. Under a load that swings slowly, at `w`, its deflection is the
