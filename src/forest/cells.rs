@@ -7,12 +7,11 @@ use super::{
     cell_planter::CellPlanter,
     change_index::ChangeIndex,
     components::ForestSettings,
+    forest_stand::ForestStand,
     known_tiles::{KnownTile, UpToDate},
     near::{CellTask, NearTrees},
     planted_tile::{PlantedTile, cells_of_tile},
     reach::{known_m, tile_of, tile_stream},
-    stand::Stand,
-    stands::{OtherStand, Stands},
 };
 use crate::{
     background::{Work, WorkerPanic, spawn_work, take_finished},
@@ -61,12 +60,8 @@ pub struct ForestCells {
     #[cfg(feature = "render")]
     pub(super) for_impostors: Option<Vec<(IVec2, Arc<PlantedTile>)>>,
     pub(super) near: NearTrees,
-    /// The wind among its trees, once its species are known; and how often it was another.
-    stands: Option<Arc<Stands>>,
-    stand_generation: u64,
-    /// Whether it has to be worked out again, and the task that does.
-    pub(super) stand_is_due: bool,
-    pub(super) stand_task: Option<Work<Stand>>,
+    /// How high and dense its trees stand, as the wind and the light meet them.
+    pub(super) stand: ForestStand,
     /// From where on impostors stand for its trees, m; none until they are drawn.
     #[cfg(feature = "render")]
     pub(super) impostors_from_m: Option<f32>,
@@ -97,10 +92,7 @@ impl ForestCells {
             near: NearTrees::new(&settings, cell_m, tile_cells, planter.cells())?,
             planter: Arc::new(planter),
             ground,
-            stands: None,
-            stand_generation: 0,
-            stand_is_due: false,
-            stand_task: None,
+            stand: ForestStand::default(),
             species,
             settings,
             orders: Orders::default(),
@@ -144,7 +136,7 @@ impl ForestCells {
             }
         }
         // Trees that stay have the stand of the plan before until this one's is worked out.
-        self.stand_generation = before.stand_generation;
+        self.stand = ForestStand::after(&before.stand);
         // Where impostors have come or gone, trees have to be others.
         if (before.settings.far_to_m > 0.0) != (self.settings.far_to_m > 0.0) {
             return self.near.discard(&mut before.near);
@@ -197,29 +189,6 @@ impl ForestCells {
     /// The plan and the ground, for what is worked out in the background.
     pub(super) fn planting(&self) -> (Arc<Planter>, Arc<dyn Ground>) {
         (self.planter.clone(), self.ground.clone())
-    }
-
-    /// The wind among its trees; none until its species are known.
-    pub(super) fn stands(&self) -> Option<&Arc<Stands>> {
-        self.stands.as_ref()
-    }
-
-    /// Grows whenever the stand is another.
-    pub(super) fn stand_generation(&self) -> u64 {
-        self.stand_generation
-    }
-
-    pub(super) fn set_stand(&mut self, stand: Stand) {
-        let others = self.stands.as_ref().map_or_else(Vec::new, |stands| stands.others.clone());
-        self.stands = Some(Arc::new(Stands { own: Arc::new(stand), others }));
-        self.stand_generation += 1;
-    }
-
-    /// Takes over what other forests there are, once its own stand is known.
-    pub(super) fn set_other_stands(&mut self, others: Vec<OtherStand>) {
-        let Some(stands) = &mut self.stands else { return };
-        *stands = Arc::new(Stands { own: stands.own.clone(), others });
-        self.stand_generation += 1;
     }
 
     pub(super) fn settings(&self) -> &ForestSettings {

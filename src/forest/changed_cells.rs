@@ -7,7 +7,6 @@ use super::{
     journal::{ChangedStem, Journal},
     near_cell::NearTree,
     reach::tile_of,
-    stands::REACH_M,
 };
 use crate::{background::take_finished, scatter::Stem, tree::Species};
 use bevy::{platform::collections::HashSet, prelude::*};
@@ -47,13 +46,15 @@ impl ForestCells {
             (_, before) => {
                 let index = ChangeIndex::of(changes, &self.planter, tile_cells);
                 let cells = before.as_ref().map(|before| index.cells_that_differ(before, &self.planter));
-                self.stand_is_due |= !index.is_empty();
+                if !index.is_empty() {
+                    self.stand.note_changes();
+                }
                 *before = Some(index);
                 // Where there were none, nothing has been planted yet, or all is planted anew after the plan has changed.
                 cells.unwrap_or_default()
             }
         };
-        self.stand_is_due |= self.near.is_any_near(&cells, REACH_M);
+        self.stand.note_changed_cells(&cells);
         let mut at_once = self.settings.cells_at_once;
         for cell in cells {
             self.change_cell(cell, &mut at_once);
@@ -114,12 +115,6 @@ impl ForestCells {
         ROUNDING_STEPS * self.store.cell_m() / f32::from(u16::MAX) + place_m.abs().max_element() * f32::EPSILON
     }
 
-    /// Has the stand worked out again if there are changes.
-    pub(super) fn note_changed_stand(&mut self) {
-        self.stand_task = None;
-        self.stand_is_due = self.changes.as_ref().is_some_and(|index| !index.is_empty());
-    }
-
     /// Whether impostors are made of its tiles.
     fn has_impostors(&self) -> bool {
         #[cfg(feature = "render")]
@@ -168,9 +163,10 @@ impl ForestCells {
         }
     }
 
-    /// Whether all changes that were taken over show everywhere, near and far.
+    /// Whether all changes that were taken over show everywhere, near and far, and the wind among the trees has followed them.
     #[must_use]
     pub fn is_up_to_date(&self) -> bool {
-        self.changed_tiles.is_empty() && self.replanting.is_empty()
+        let is_planted = self.changed_tiles.is_empty() && self.replanting.is_empty();
+        is_planted && (self.stand.get().is_none() || !self.stand.is_due() && self.near.has_canopies())
     }
 }

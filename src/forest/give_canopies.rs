@@ -7,11 +7,11 @@ use bevy::prelude::*;
 /// Gives the trees of near cells their stand, when their forest's is ready.
 pub(super) fn give_canopies(mut commands: Commands, mut forests: Query<&mut ForestCells>) {
     for mut forest in &mut forests {
-        let Some(stands) = forest.stands().cloned() else { continue };
-        let (cell_m, generation) = (forest.planter().cell_m(), forest.stand_generation());
-        let near = &mut forest.bypass_change_detection().near;
+        let Some(stands) = forest.stand.get().cloned() else { continue };
+        let cell_m = forest.planter().cell_m();
+        let ForestCells { near, stand, .. } = forest.bypass_change_detection();
         near.give_canopies(
-            generation,
+            stand.generations(),
             |cell| CellCanopies::spawn(stands.clone(), stands.own.planter.corner_m(cell), cell_m),
             |tree, canopy| {
                 commands.entity(tree).try_insert(InCanopy(canopy));

@@ -12,9 +12,9 @@
 //!   again. [`ForestEditor`] refuses what cannot be; `stems` tells which stem stands where, `messages` what becomes of trees.
 //! - `falling` lets trees fall. `renew_stands` has the wind among the trees follow what was felled and planted (`stand_changes`).
 //! - `near_services` gives cells a wind of their own and the nearest trees beams and leaves as entities, where that is asked for.
-//! - `stand` knows how high and dense a forest's trees about a place are; `stand_species` makes it ready. `stands` has those of all forests
-//!   (`share_stands`), and how open a place is to each side, for the wind and the light there; `cell_canopies` works that out for a cell,
-//!   `give_canopies` gives it to near trees.
+//! - `stand` knows how high and dense a forest's trees about a place are; `stand_species` makes it ready, `forest_stand` knows what of it is
+//!   due to be worked out again. `stands` has those of all forests (`share_stands`), and how open a place is to each side, for the wind and
+//!   the light there; `cell_canopies` works that out for a cell, `give_canopies` gives it to near trees.
 //! - `missing_species` tells which species of a plan cannot be loaded.
 //! - With the feature `render`, `impostors` draws the trees beyond, a tile of cells at a time, which `cells_for_impostors` gives it;
 //!   `tree_impostors` tells near trees of theirs.
@@ -41,6 +41,7 @@ mod diagnose;
 mod editor;
 mod extent;
 mod falling;
+mod forest_stand;
 mod give_canopies;
 #[cfg(feature = "render")]
 mod impostors;

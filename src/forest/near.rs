@@ -5,6 +5,7 @@ use super::extent::Extent;
 use super::{
     cell_canopies::CanopyTask,
     components::{ForestCell, ForestSettings},
+    forest_stand::StandGenerations,
     near_cell::{NearCell, NearEvent, NearTree, tree},
     planted_tile::PlantedTile,
     reach::{reaching, tile_of},
@@ -256,22 +257,30 @@ impl NearTrees {
         });
     }
 
-    /// Gives trees that lack it the stand of a generation of the forest's. `work_out` has that of a cell worked out.
+    /// Gives trees that lack it the stand of the forest as it is now. `work_out` has that of a cell worked out.
     pub fn give_canopies(
         &mut self,
-        generation: u64,
+        generations: &StandGenerations,
         work_out: impl Fn(IVec2) -> CanopyTask,
         mut give: impl FnMut(Entity, Canopy),
     ) {
-        let Self { cells, without_canopies, canopies_of, .. } = self;
-        if std::mem::replace(canopies_of, generation) != generation {
+        let Self { cells, without_canopies, canopies_of, tile_cells, .. } = self;
+        let now = generations.newest();
+        let since = |cell: IVec2| generations.since(tile_of(cell, *tile_cells));
+        if std::mem::replace(canopies_of, now) != now {
+            let outdated = cells.iter().filter(|(cell, there)| !there.has_canopies_since(since(**cell)));
             without_canopies.clear();
-            without_canopies.extend(cells.keys().copied());
+            without_canopies.extend(outdated.map(|(cell, _)| *cell));
         }
         without_canopies.retain(|cell| {
             let there = cells.get_mut(cell);
-            there.is_some_and(|there| !there.give_canopies(generation, || work_out(*cell), &mut give))
+            there.is_some_and(|there| !there.give_canopies(since(*cell), || (now, work_out(*cell)), &mut give))
         });
+    }
+
+    /// Whether all trees have the stand of the forest as it was in the last frame.
+    pub fn has_canopies(&self) -> bool {
+        self.without_canopies.is_empty()
     }
 
     /// Removes cells that nobody is near to any more, and outdated ones once all others are planted.

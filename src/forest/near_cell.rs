@@ -67,16 +67,24 @@ impl NearCell {
         }
     }
 
-    /// Gives its trees that lack it the stand of a generation, which `work_out` begins to work out. Returns whether all of its trees have it.
+    /// Whether all of its trees have a stand of that generation or a newer one.
+    pub fn has_canopies_since(&self, since: u64) -> bool {
+        let is_new = |of: u64| of >= since;
+        let has_own = self.canopies.as_ref().is_some_and(|(of, _)| is_new(*of));
+        has_own && self.planted.is_empty() && self.spawned.iter().all(|tree| is_new(tree.canopy_of))
+    }
+
+    /// Gives its trees that lack it a stand of the generation `since` or a newer one, which `work_out` begins to work out. Returns whether
+    /// all of its trees have it.
     pub fn give_canopies(
         &mut self,
-        generation: u64,
-        work_out: impl FnOnce() -> CanopyTask,
+        since: u64,
+        work_out: impl FnOnce() -> (u64, CanopyTask),
         mut give: impl FnMut(Entity, Canopy),
     ) -> bool {
-        if self.canopies.as_ref().is_none_or(|(of, _)| *of != generation) {
-            let task = self.canopy_task.take().filter(|(of, _)| *of == generation);
-            let (_, mut task) = task.unwrap_or_else(|| (generation, work_out()));
+        if self.canopies.as_ref().is_none_or(|(of, _)| *of < since) {
+            let task = self.canopy_task.take().filter(|(of, _)| *of >= since);
+            let (generation, mut task) = task.unwrap_or_else(work_out);
             match block_on(poll_once(&mut task)) {
                 Some(canopies) => {
                     let canopies = canopies.unwrap_or_else(|panic| {
@@ -98,9 +106,9 @@ impl NearCell {
                 }
             }
         }
-        let Some((_, canopies)) = &self.canopies else { return false };
-        for tree in self.spawned.iter_mut().filter(|tree| tree.canopy_of != generation) {
-            tree.canopy_of = generation;
+        let Some((generation, canopies)) = &self.canopies else { return false };
+        for tree in self.spawned.iter_mut().filter(|tree| tree.canopy_of != *generation) {
+            tree.canopy_of = *generation;
             give(tree.entity, canopies.at(tree.plant.position));
         }
         self.planted.is_empty()

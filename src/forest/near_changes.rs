@@ -18,16 +18,6 @@ impl NearTrees {
         self.cells.get(&cell).is_some_and(|there| !there.is_outdated)
     }
 
-    /// Whether any of some cells is nearer to a cell that stands here than this, m.
-    pub fn is_any_near(&self, cells: &[IVec2], within_m: f32) -> bool {
-        let corners = self.cells.keys().map(|cell| [*cell; 2]);
-        let Some([min, max]) = corners.reduce(|[min, max], [cell, _]| [min.min(cell), max.max(cell)]) else {
-            return false;
-        };
-        let reach = (within_m / self.cell_m).ceil() as i32;
-        cells.iter().any(|cell| cell.cmpge(min - reach).all() && cell.cmple(max + reach).all())
-    }
-
     /// Takes a tree that was felled out of its cell.
     pub fn fell(&mut self, cell: IVec2, id: StemId) -> Option<NearTree> {
         let there = self.cells.get_mut(&cell)?;

@@ -11,12 +11,12 @@ pub(super) fn share_stands(
 ) {
     known.clear();
     let stand_of = |(entity, transform, forest): (Entity, &GlobalTransform, &ForestCells)| {
-        let stand = forest.stands()?.own.clone();
+        let stand = forest.stand.get()?.own.clone();
         Some((entity, stand, transform.translation().xz().as_dvec2()))
     };
     known.extend(forests.iter().filter_map(stand_of));
     for (entity, transform, mut forest) in &mut forests {
-        let Some(stands) = forest.stands() else { continue };
+        let Some(stands) = forest.stand.get() else { continue };
         let at = transform.translation().xz().as_dvec2();
         let others = || {
             let others = known.iter().filter(|(other, ..)| *other != entity);
@@ -27,7 +27,7 @@ pub(super) fn share_stands(
             stands.others.len() + 1 == known.len() && stands.others.iter().zip(others()).all(|(a, b)| a.is_as(&b));
         if !is_as_before {
             let others = others().collect();
-            forest.bypass_change_detection().set_other_stands(others);
+            forest.bypass_change_detection().stand.set_others(others);
         }
     }
     known.clear();

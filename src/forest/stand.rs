@@ -96,21 +96,49 @@ impl Stand {
     }
 }
 
+/// A stand for tests.
 #[cfg(test)]
-mod tests {
+pub(super) mod test_stand {
     use super::*;
-    use crate::tree::phenology::Phenology;
+    use crate::{
+        ground::LevelGround,
+        scatter::{
+            ForestPlan,
+            plan::{Area, Shape, Stock},
+        },
+        tree::phenology::Phenology,
+    };
 
-    #[test]
-    fn a_year_has_few_stands() {
-        let species = StandSpecies {
+    /// A wood of 400 m by 400 m: 100 trees a hectare of 20 m height and 100 m^2.
+    pub fn wood() -> Stand {
+        let shape = Shape::Rectangle { min_m: [0.0, 0.0], max_m: [400.0, 400.0] };
+        let age_years = Age::default().mature_years;
+        let stock = vec![Stock { age_years, age_spread_years: 0.0, ..Stock::default() }];
+        let area = Area { shape, density_per_ha: 100.0, stock, ..Area::default() };
+        let planter = Planter::new(&ForestPlan { areas: vec![area], ..ForestPlan::default() }).expect("a valid plan");
+        let (planter, ground) = (Arc::new(planter), Arc::new(LevelGround::default()));
+        Stand { planter, ground, species: vec![Some(species())], balances: CellBalances::default() }
+    }
+
+    pub fn species() -> StandSpecies {
+        StandSpecies {
             age: Age::default(),
             height_m: 20.0,
             frontal_area_m2: 100.0,
             bare_share: 0.2,
             leaves: LeafSeason::of(&Phenology::default()),
             leaf_share: 1.0,
-        };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{test_stand::species, *};
+
+    #[test]
+    fn a_year_has_few_stands() {
+        let species = species();
         let years = (0..=1000).map(|step| species.in_season(step as f32 / 1000.0));
         let mut stands: Vec<StandSpecies> = years.collect();
         assert_eq!((stands[0].leaf_share, stands[550].leaf_share, stands[1000].leaf_share), (0.0, 1.0, 0.0));

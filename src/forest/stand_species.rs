@@ -83,7 +83,7 @@ pub(super) fn prepare_stands(
             library.measure(*id, species);
         }
     }
-    for handle in forests.iter().filter(|forest| forest.stands().is_none()).flat_map(ForestCells::species) {
+    for handle in forests.iter().filter(|forest| forest.stand.get().is_none()).flat_map(ForestCells::species) {
         if let Some(species) = valid(handle.id()).filter(|_| !library.is_asked_for(handle.id())) {
             library.measure(handle.id(), species);
         }
@@ -110,7 +110,7 @@ pub(super) fn prepare_stands(
     });
     for mut forest in &mut forests {
         let has_other = forest.species().iter().any(|species| measured.contains(&species.id()));
-        if forest.stands().is_some() && !has_other {
+        if forest.stand.get().is_some() && !has_other {
             continue;
         }
         let is_settled = |handle: &Handle<Species>| {
@@ -120,8 +120,8 @@ pub(super) fn prepare_stands(
             let now = |handle: &Handle<Species>| known.get(&handle.id()).map(|known| known.in_season(season.wrapped()));
             let species = forest.species().iter().map(now).collect();
             let (planter, ground) = forest.planting();
-            forest.set_stand(Stand { planter, ground, species, balances: default() });
-            forest.note_changed_stand();
+            let is_changed = forest.changes.as_ref().is_some_and(|changes| !changes.is_empty());
+            forest.stand.begin(Stand { planter, ground, species, balances: default() }, is_changed);
         }
     }
 }

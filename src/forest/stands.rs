@@ -94,41 +94,13 @@ struct UpwindView {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        forest::{
-            stand::StandSpecies,
-            stand_changes::{CellBalance, CellBalances},
+    use crate::forest::{
+        stand::{
+            StandSpecies,
+            test_stand::{species, wood},
         },
-        ground::LevelGround,
-        scatter::{
-            ForestPlan, Planter,
-            plan::{Area, Shape, Stock},
-        },
-        tree::{LeafSeason, growth::age::Age, phenology::Phenology},
+        stand_changes::CellBalance,
     };
-
-    /// A wood of 400 m by 400 m: 100 trees a hectare of 20 m height and 100 m^2.
-    fn wood() -> Stand {
-        let shape = Shape::Rectangle { min_m: [0.0, 0.0], max_m: [400.0, 400.0] };
-        let age_years = Age::default().mature_years;
-        let stock = vec![Stock { age_years, age_spread_years: 0.0, ..Stock::default() }];
-        let area = Area { shape, density_per_ha: 100.0, stock, ..Area::default() };
-        let planter = Planter::new(&ForestPlan { areas: vec![area], ..ForestPlan::default() }).expect("a valid plan");
-        let (planter, ground) = (Arc::new(planter), Arc::new(LevelGround::default()));
-        Stand { planter, ground, species: vec![Some(species())], balances: CellBalances::default() }
-    }
-
-    fn species() -> StandSpecies {
-        let leaves = LeafSeason::of(&Phenology::default());
-        StandSpecies {
-            age: Age::default(),
-            height_m: 20.0,
-            frontal_area_m2: 100.0,
-            bare_share: 0.2,
-            leaves,
-            leaf_share: 1.0,
-        }
-    }
 
     fn alone(stand: Stand) -> Stands {
         Stands { own: Arc::new(stand), others: Vec::new() }

@@ -43,7 +43,7 @@ pub struct ForestImpostors {
     marked_for: Option<(u64, MaskRange)>,
 }
 
-/// The meshes of a tile, the canopies of its blocks, and the forest's [`ForestCells::stand_generation`] that these are of.
+/// The meshes of a tile, the canopies of its blocks, and the generation of the forest's stand that these are of.
 type MadeTile = (Vec<TileMesh>, BlockCanopies, u64);
 
 struct Tile {
@@ -155,7 +155,7 @@ pub(super) fn stream_impostor_tiles(
         let is_wanted = forest.settings().far_to_m > 0.0;
         forest.keep_tiles_for_impostors(is_wanted);
         let is_baked = forest.species().iter().all(|species| library.is_settled(species, &assets));
-        let is_ready = is_baked && forest.stands().is_some();
+        let is_ready = is_baked && forest.stand.get().is_some();
         let mut tiles = match tiles {
             Some(tiles) if is_wanted && tiles.tiles_since == forest.tiles_since() => tiles,
             None if !is_wanted => continue,
@@ -222,8 +222,8 @@ impl ForestImpostors {
         if room == 0 || !forest.has_tiles_for_impostors() {
             return;
         }
-        let Some(stands) = forest.stands().cloned() else { return };
-        let (tile_m, generation) = (self.cells as f32 * forest.planter().cell_m(), forest.stand_generation());
+        let Some(stands) = forest.stand.get().cloned() else { return };
+        let (tile_m, generation) = (self.cells as f32 * forest.planter().cell_m(), forest.stand.generations().newest());
         let shape = |species: &Handle<Species>| library.get(species.id()).map(ImpostorShape::from);
         let shapes: Arc<[Option<ImpostorShape>]> = forest.species().iter().map(shape).collect();
         for (place, planted) in forest.take_tiles_for_impostors(room) {
@@ -256,12 +256,10 @@ impl ForestImpostors {
                 tile.stand_generation = generation;
             }
         }
-        let Some(stands) = forest.stands().filter(|_| self.stand_generation != forest.stand_generation()) else {
-            return;
-        };
-        let generation = forest.stand_generation();
-        let planter = forest.planter();
-        let outdated = self.tiles.iter().filter(|(_, tile)| tile.stand_generation < generation);
+        let (generations, planter) = (forest.stand.generations(), forest.planter());
+        let generation = generations.newest();
+        let Some(stands) = forest.stand.get().filter(|_| self.stand_generation != generation) else { return };
+        let outdated = self.tiles.iter().filter(|(place, tile)| tile.stand_generation < generations.since(**place));
         let tiles: Vec<_> = outdated.map(|(place, _)| (*place, planter.corner_m(*place * self.cells))).collect();
         if self.making.is_empty() && tiles.is_empty() {
             self.stand_generation = generation;

@@ -1,6 +1,7 @@
 //! Trees under pointers: a backend of `bevy_picking`.
 
 use super::rays::TreeRays;
+use crate::schedule::WindwoodSystems;
 use bevy::{
     picking::{
         Pickable, PickingSystems,
@@ -18,8 +19,9 @@ pub struct TreePickingPlugin;
 
 impl Plugin for TreePickingPlugin {
     fn build(&self, app: &mut App) {
-        let pick = pick_trees.run_if(resource_exists::<RayMap>).in_set(PickingSystems::Backend);
-        app.add_systems(PreUpdate, pick);
+        // A pointer points at what was drawn: trees as they stood in the last frame, before the wind moves on.
+        let pick = pick_trees.before(WindwoodSystems::AdvanceWind).in_set(PickingSystems::Backend);
+        app.add_systems(PreUpdate, pick.run_if(resource_exists::<RayMap>));
     }
 }
 

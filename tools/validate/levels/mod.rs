@@ -27,7 +27,7 @@ const STEP_M: f32 = 0.025;
 /// Differences of one change of level.
 #[derive(Default, Clone, Copy)]
 struct Differences {
-    /// Difference of covered pixels, as a share of what the full tree covers.
+    /// How many more pixels the level covers, as a share of what the full tree covers.
     coverage: f64,
     /// Difference of outlines: sum over squares of a tenth of the height of the difference of covered pixels, as a share of what
     /// the full tree covers.
@@ -87,22 +87,22 @@ pub fn run(picture: &Path, only: Option<&str>, year: f32) -> Report {
         worst_coarse.abrupt,
         "of crowns of a few large parts, which hardly move",
     );
-    report.record("coverage_difference_coarse_crowns", worst_coarse.coverage, "of crowns of a few large parts");
+    report.record("coverage_difference_coarse_crowns", worst_coarse.coverage.abs(), "of crowns of a few large parts");
     report.record("colour_difference_coarse_crowns", worst_coarse.colour, "of crowns of a few large parts");
-    report.record("coverage_difference_worst", worst.coverage, "of a coarser level, as a share of the full tree's");
+    report.record("coverage_difference_worst", worst.coverage.abs(), "of a coarser level, as a share of the full tree's");
     report.record(
         "outline_difference_worst",
         worst.outline,
         "by squares of a tenth of a tree, as a share of the full tree's",
     );
     report.record("colour_difference_worst", worst.colour, "of mean colours, of 255");
-    report.record("paper_coverage_difference_worst", worst_paper.coverage, "the paper's levels");
+    report.record("paper_coverage_difference_worst", worst_paper.coverage.abs(), "the paper's levels");
     report.record("paper_colour_difference_worst", worst_paper.colour, "the paper's levels");
     report
 }
 
 fn print_row(species: &str, change: &str, Differences { coverage, outline, colour, pop, abrupt }: Differences) {
-    println!("{species:<18} {change:<22} {coverage:>9.3} {outline:>9.3} {colour:>9.1} {pop:>9.2} {abrupt:>9.2}");
+    println!("{species:<18} {change:<22} {coverage:>+9.3} {outline:>9.3} {colour:>9.1} {pop:>9.2} {abrupt:>9.2}");
 }
 
 /// Measures one of the three changes of our levels.
@@ -136,10 +136,10 @@ fn measure_paper_level(scene: &mut TestScene, level: usize, sheet: &mut ContactS
 }
 
 impl Differences {
-    /// The greater of each.
+    /// The worse of each.
     fn worse(self, other: Self) -> Self {
         Self {
-            coverage: self.coverage.max(other.coverage),
+            coverage: if other.coverage.abs() > self.coverage.abs() { other.coverage } else { self.coverage },
             outline: self.outline.max(other.outline),
             colour: self.colour.max(other.colour),
             pop: if self.pop.is_nan() { self.pop } else { self.pop.max(other.pop) },
@@ -154,7 +154,7 @@ fn compare(full: &RgbImage, level: &RgbImage, tenth_px: u32) -> Differences {
     let (full, level) = (covered(full), covered(level));
     let moved: u32 = squares.iter().zip(&others).map(|(one, other)| one.abs_diff(*other)).sum();
     let outline = f64::from(moved) / full.0.max(1.0);
-    let coverage = (level.0 / full.0.max(1.0) - 1.0).abs();
+    let coverage = level.0 / full.0.max(1.0) - 1.0;
     let apart = full.1.iter().zip(level.1).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
     Differences { coverage, outline, colour: (apart / 3.0).sqrt(), ..Differences::default() }
 }
