@@ -19,8 +19,8 @@ pub struct TreeEntered {
     pub species: AssetId<Species>,
 }
 
-/// A tree of a forest stands as an entity no more: nobody is near any longer, or the plan or a change has made it another, which enters as
-/// an entity of its own. One that is felled does not leave.
+/// A tree of a forest stands as an entity no more: nobody is near any longer, or the plan or a change has made it one of another
+/// species, which enters as an entity of its own. One that is felled does not leave.
 #[derive(Message, Clone, Debug, PartialEq)]
 pub struct TreeLeft {
     /// The forest.

@@ -6,7 +6,7 @@ use super::{
     cell_canopies::CanopyTask,
     components::{ForestCell, ForestSettings},
     forest_stand::StandGenerations,
-    near_cell::{NearCell, NearEvent, NearTree, tree},
+    near_cell::{NearCell, NearEvent, NearTree, take_tree, tree},
     planted_tile::PlantedTile,
     reach::{reaching, tile_of},
     stem_id::StemId,
@@ -329,10 +329,25 @@ impl NearTrees {
             left -= cell.planted.len() - rest;
             for (id, plant) in cell.planted.drain(rest..) {
                 let handle = &species[usize::from(plant.species)];
-                let mut tree = commands.spawn((tree(&plant, handle.clone()), id, ChildOf(cell.entity)));
-                mark(&mut tree, &plant);
-                let spawned = NearTree { id, plant, species: handle.id(), entity: tree.id(), canopy_of: 0 };
-                self.events.push(NearEvent::Entered(spawned.clone()));
+                let planted = tree(&plant, handle.clone());
+                let spawned = match take_tree(&mut cell.altered, id) {
+                    Some(there) => {
+                        // The game may have despawned it.
+                        if let Ok(mut tree) = commands.get_entity(there.entity) {
+                            tree.insert(planted);
+                            mark(&mut tree, &plant);
+                        }
+                        NearTree { is_altered: false, ..there }
+                    }
+                    None => {
+                        let mut tree = commands.spawn((planted, id, ChildOf(cell.entity)));
+                        mark(&mut tree, &plant);
+                        let (species, entity) = (handle.id(), tree.id());
+                        let spawned = NearTree { id, plant, species, entity, is_altered: false, canopy_of: 0 };
+                        self.events.push(NearEvent::Entered(spawned.clone()));
+                        spawned
+                    }
+                };
                 cell.spawned.push(spawned);
             }
             if cell.planted.is_empty() {

@@ -21,7 +21,9 @@ pub(super) struct NearCell {
     /// What is still to be spawned.
     pub planted: Vec<(StemId, Planted)>,
     pub spawned: Vec<NearTree>,
-    /// Trees of the plan before, or that were changed, which go when all others are drawn.
+    /// Trees that stand and are to become others, as when they have grown: they are among those that are still to be spawned.
+    pub altered: Vec<NearTree>,
+    /// Trees of the plan before, or that have become another species, which go when all others are drawn.
     pub outdated: Vec<NearTree>,
     /// Whether it is of the plan before.
     pub is_outdated: bool,
@@ -41,6 +43,8 @@ pub(super) struct NearTree {
     pub plant: Planted,
     pub species: AssetId<Species>,
     pub entity: Entity,
+    /// Whether it has still to become that plant.
+    pub is_altered: bool,
     /// The generation of the stand that it was given; 0 before.
     pub canopy_of: u64,
 }
@@ -59,6 +63,7 @@ impl NearCell {
             is_drawn: planted.is_empty(),
             planted,
             spawned: Vec::new(),
+            altered: Vec::new(),
             outdated: Vec::new(),
             is_outdated: false,
             is_articulated: false,
@@ -116,26 +121,40 @@ impl NearCell {
 
     /// All of its trees.
     pub fn trees(&self) -> impl Iterator<Item = &NearTree> {
-        self.spawned.iter().chain(&self.outdated)
+        self.spawned.iter().chain(&self.altered).chain(&self.outdated)
     }
 
-    /// The same cell of another plan: trees that both have stay.
+    /// Takes the tree of a stem out.
+    pub fn take(&mut self, id: StemId) -> Option<NearTree> {
+        self.planted.retain(|(planted, _)| *planted != id);
+        take_tree(&mut self.spawned, id).or_else(|| take_tree(&mut self.altered, id))
+    }
+
+    /// The same cell of another plan: trees of the same species that both have stay.
     pub fn planted_anew(mut self, planted: Vec<(StemId, Planted)>, species: &[Handle<Species>]) -> Self {
         let mut before = std::mem::take(&mut self.spawned);
+        before.append(&mut self.altered);
         let mut cell = Self { outdated: std::mem::take(&mut self.outdated), ..Self::new(self.entity, planted) };
         cell.planted.retain(|(id, plant)| {
             let species = species[usize::from(plant.species)].id();
-            let is_same = |tree: &NearTree| {
-                tree.id == *id && tree.species == species && Planted { species: plant.species, ..tree.plant } == *plant
-            };
-            let Some(place) = before.iter().position(is_same) else { return true };
-            cell.spawned.push(NearTree { plant: *plant, ..before.swap_remove(place) });
-            false
+            let stands = |tree: &NearTree| tree.id == *id && tree.species == species;
+            let Some(place) = before.iter().position(stands) else { return true };
+            let tree = before.swap_remove(place);
+            let is_altered = tree.is_altered || Planted { species: plant.species, ..tree.plant } != *plant;
+            let trees = if is_altered { &mut cell.altered } else { &mut cell.spawned };
+            trees.push(NearTree { plant: *plant, is_altered, ..tree });
+            is_altered
         });
         cell.outdated.extend(before);
         cell.is_drawn = cell.planted.is_empty() && cell.outdated.is_empty();
         cell
     }
+}
+
+/// Takes the tree of a stem out of some.
+pub(super) fn take_tree(trees: &mut Vec<NearTree>, id: StemId) -> Option<NearTree> {
+    let place = trees.iter().position(|tree| tree.id == id)?;
+    Some(trees.swap_remove(place))
 }
 
 /// What a plant is as an entity.

@@ -20,10 +20,7 @@ impl NearTrees {
 
     /// Takes a tree that was felled out of its cell.
     pub fn fell(&mut self, cell: IVec2, id: StemId) -> Option<NearTree> {
-        let there = self.cells.get_mut(&cell)?;
-        there.planted.retain(|(planted, _)| *planted != id);
-        let place = there.spawned.iter().position(|tree| tree.id == id)?;
-        Some(there.spawned.swap_remove(place))
+        self.cells.get_mut(&cell)?.take(id)
     }
 
     /// Makes a cell that stands here what is planted there now. Trees that are the same stay.

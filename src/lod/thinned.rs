@@ -11,7 +11,7 @@ use crate::tree::{Growth, Species, TreeModel, crown::impressionist::leaves_at, v
 /// twigs are all that is seen of a crown. Branches of birches are thin: with all that may be left out under the leaves of an oak, a birch
 /// would be a pole in spring.
 const LEAST_WOOD_SHARE: f32 = 0.45;
-const LEAST_BARE_WOOD_SHARE: f32 = 0.95;
+const LEAST_BARE_WOOD_SHARE: f32 = 0.9;
 
 /// A plant with no more vertices of leaves than so many is never thinned: its few leaves, enlarged, would look like another plant.
 const SMALL_VERTICES: usize = 2000;

@@ -8,6 +8,7 @@ use super::{
         bounds::{fit_live_bounds, fit_tree_bounds},
         components::DrawnTree,
         forget::forget_prepared_species,
+        growth::{FormerShape, fade_former_shapes, free_former_row, keep_former_shape},
         layers::copy_render_layers,
         mesh_entities::update_tree_meshes,
         removal::{LostMeshes, note_lost_mesh, remove_tree_meshes, restore_lost_meshes},
@@ -91,6 +92,8 @@ impl Plugin for TreeRenderPlugin {
             .add_message::<SpeciesPrepared>()
             .add_message::<VariantRemoved>()
             .add_observer(free_row)
+            .add_observer(keep_former_shape)
+            .add_observer(free_former_row)
             .add_observer(remove_tree_meshes)
             .add_observer(note_lost_mesh);
         app.world_mut().resource_mut::<ActiveSway>().hold_incoming();
@@ -122,7 +125,9 @@ impl Plugin for TreeRenderPlugin {
             copy_render_layers
         );
         let pack = timed!(app, pack_incoming_wind);
-        let upload = timed!(app, upload_winds, write_tree_rows, update_posed_trees, upload_live_trees, upload_frame);
+        let grow = timed!(app, fade_former_shapes);
+        let rows = timed!(app, upload_winds, write_tree_rows);
+        let upload = timed!(app, update_posed_trees, upload_live_trees, upload_frame);
         let light =
             (find_lights, update_material_lights::<SwayExtension>.run_if(resource_changed::<TreeLights>)).chain();
         let can_draw = resource_exists::<RenderCapabilities>;
@@ -144,7 +149,7 @@ impl Plugin for TreeRenderPlugin {
         )
         .add_systems(
             PostUpdate,
-            upload
+            (rows.chain(), grow.run_if(any_with_component::<FormerShape>), upload.chain())
                 .chain()
                 .after(VisibilitySystems::VisibilityPropagate)
                 .in_set(WindwoodSystems::Upload)

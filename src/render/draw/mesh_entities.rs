@@ -3,6 +3,7 @@
 
 use super::{
     components::{DrawnTree, TreeMeshOf, TreeMeshes, TreePart},
+    growth::FormerShape,
     layers::insert_layers_and_culling,
     waiting::{DrawnLevels, WaitingTrees},
 };
@@ -28,6 +29,7 @@ type Drawn = (
     &'static LodSelection,
     &'static mut DrawnTree,
     Has<HasImpostor>,
+    Has<FormerShape>,
     Option<&'static RenderLayers>,
     Option<&'static TreeMeshes>,
 );
@@ -42,7 +44,7 @@ pub(crate) fn update_tree_meshes(
     mut trees: Query<Drawn, Or<(Changed<LodSelection>, Changed<TreeInstance>, Changed<DrawnTree>)>>,
     mut visibilities: Query<&mut Visibility, With<TreeMeshOf>>,
 ) {
-    for (entity, tree, instance, selection, mut drawn, has_impostor, layers, meshes) in &mut trees {
+    for (entity, tree, instance, selection, mut drawn, has_impostor, is_growing, layers, meshes) in &mut trees {
         let Some(variant) = library.variant(tree.species.id(), instance.model) else { continue };
         // With another instance everything is another.
         let before = drawn.selection.filter(|_| !instance.is_changed());
@@ -83,6 +85,7 @@ pub(crate) fn update_tree_meshes(
             selection,
             levels,
             has_impostor,
+            is_growing,
             is_bare,
             layers,
             capabilities: *capabilities,
@@ -113,6 +116,7 @@ struct MeshSpawner<'a> {
     selection: &'a LodSelection,
     levels: DrawnLevels,
     has_impostor: bool,
+    is_growing: bool,
     is_bare: bool,
     layers: Option<&'a RenderLayers>,
     capabilities: RenderCapabilities,
@@ -168,7 +172,10 @@ impl MeshSpawner<'_> {
             (Mesh3d(handle.clone()), MeshTag::new(tag), self.variant.bounds),
         );
         let materials = mesh.materials(self.is_bare);
-        let mut spawned = match &materials.swaying {
+        let fading_bark =
+            || self.variant.fading_bark(self.is_bare).filter(|_| self.is_growing && part == TreePart::Wood);
+        let swaying = materials.swaying.as_ref().map(|own| fading_bark().unwrap_or(own));
+        let mut spawned = match swaying {
             Some(swaying) if row.is_some() => commands.spawn((entity, MeshMaterial3d(swaying.clone()))),
             _ => commands.spawn((entity, MeshMaterial3d(materials.still.clone()))),
         };

@@ -5,6 +5,7 @@ pub(crate) mod bounds;
 pub(crate) mod components;
 pub(crate) mod counts;
 pub(crate) mod forget;
+pub(crate) mod growth;
 pub(crate) mod layers;
 pub(crate) mod mesh_entities;
 pub(crate) mod removal;

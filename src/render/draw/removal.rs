@@ -1,6 +1,9 @@
 //! Removes the meshes of trees that go, and restores meshes that something else has despawned.
 
-use super::components::{DrawnTree, TreeMeshOf, TreeMeshes};
+use super::{
+    components::{DrawnTree, TreeMeshOf, TreeMeshes},
+    growth::{FormerMeshes, FormerShape},
+};
 use crate::{
     render::{instances::components::TreeInstance, lod::thresholds::LodSelection},
     tree::Tree,
@@ -20,7 +23,8 @@ pub(crate) fn remove_tree_meshes(removed: On<Remove<Tree>>, mut commands: Comman
 }
 
 pub(crate) fn remove_all_drawn(mut tree: EntityWorldMut) {
-    tree.despawn_related::<TreeMeshes>().remove::<(TreeInstance, LodSelection, DrawnTree)>();
+    tree.despawn_related::<FormerMeshes>().despawn_related::<TreeMeshes>();
+    tree.remove::<(FormerShape, TreeInstance, LodSelection, DrawnTree)>();
 }
 
 /// Notes trees that lose a mesh.

@@ -1,6 +1,11 @@
 //! Gives trees their instances: a row in the tables, once their model is prepared.
 
-use super::{components::TreeInstance, rows::BeamRow, tables::InstanceTables, tag::MAX_ROWS};
+use super::{
+    components::{TreeGrows, TreeInstance},
+    rows::BeamRow,
+    tables::InstanceTables,
+    tag::MAX_ROWS,
+};
 use crate::{
     render::{
         capabilities::RenderCapabilities,
@@ -48,6 +53,9 @@ pub(crate) fn assign_instances(
     due.dedup();
     for (entity, tree, grown, instance) in due.drain(..).filter_map(|tree| assigned.get(tree).ok()) {
         if assigner.has_levels_of_former(tree, grown, instance) {
+            if assigner.has_grown(tree, grown, instance) {
+                assigner.commands.trigger(TreeGrows { entity });
+            }
             assigner.assign(entity, tree, grown);
         } else {
             waiting.push(entity);
@@ -81,6 +89,11 @@ impl Assigner<'_, '_> {
         let is_there = next.parts_there().contains(wanted);
         library.want(species, model, |_| wanted);
         is_there
+    }
+
+    /// Whether a tree is older or younger than it was, and not of a species that was changed: then its former variant is gone.
+    fn has_grown(&self, tree: &Tree, grown: &Grown, former: &TreeInstance) -> bool {
+        former.model != grown.model.id() && self.library.variant(tree.species.id(), former.model).is_some()
     }
 
     /// Gives a tree an instance, if its model is prepared. Returns whether it was. The row of an instance that it had before is freed

@@ -20,6 +20,12 @@ pub(crate) struct TreeInstance {
     pub tint: u8,
 }
 
+/// A tree has become older or younger, and is about to get another instance.
+#[derive(EntityEvent, Clone, Copy)]
+pub(crate) struct TreeGrows {
+    pub entity: Entity,
+}
+
 /// A tree for which an impostor stands beyond some distance. It is written by what draws impostors. No impostor stands for its clones.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 #[component(clone_behavior = Ignore)]

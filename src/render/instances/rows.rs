@@ -147,7 +147,8 @@ pub(crate) struct TreeRow {
     /// Negative for a tree that is mirrored.
     pub scale: f32,
     pub first_beam: u32,
-    pub beam_count: u32,
+    /// See [`TreeRow::set_beams`] and [`TreeRow::set_growth_fade`].
+    beams_and_fade: u32,
     pub first_pose: u32,
     /// See [`TreeRow::season_and_height`].
     pub season_and_height: u32,
@@ -169,6 +170,21 @@ impl TreeRow {
         let mut row = Self { first_beam, impostor: Self::NO_IMPOSTOR, ..Self::default() };
         row.set_canopy(Canopy::OPEN);
         row
+    }
+
+    /// Beams that are posed; 0 for a tree without poses.
+    #[cfg(test)]
+    pub fn beams(&self) -> u32 {
+        self.beams_and_fade & 0xffff
+    }
+
+    pub fn set_beams(&mut self, beams: u32) {
+        self.beams_and_fade = self.beams_and_fade & !0xffff | beams.min(0xffff);
+    }
+
+    /// A state of the cross-fade, as in `cross_fade.wesl`: that of a shape that comes or goes while its tree grows, 0 for any other.
+    pub fn set_growth_fade(&mut self, fade: i32) {
+        self.beams_and_fade = self.beams_and_fade & 0xffff | fade.cast_unsigned() << 16;
     }
 
     pub fn set_canopy(&mut self, PackedCanopy { profile, exposure }: PackedCanopy) {
@@ -226,6 +242,17 @@ mod tests {
             let packed = packed_stiff_axis(&BeamDynamics { direction, stiff_axis, ..upright(OAK, 1.0) });
             let [of_a, of_b] = [packed as u16, (packed >> 16) as u16].map(|bits| f32::from(bits as i16) / 32_767.0);
             assert!((a * of_a + b * of_b).distance(stiff_axis) < 5e-5, "{direction}");
+        }
+    }
+
+    #[test]
+    fn beams_and_the_fade_of_growth_share_a_word() {
+        let mut row = TreeRow::new(0);
+        for (beams, fade) in [(0, 0), (65_535, -1024), (700, 1023), (1, -1)] {
+            row.set_beams(beams);
+            row.set_growth_fade(fade);
+            row.set_beams(beams);
+            assert_eq!((row.beams(), row.beams_and_fade.cast_signed() >> 16), (beams, fade));
         }
     }
 

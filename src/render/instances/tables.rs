@@ -45,6 +45,8 @@ struct RowState {
     /// Beams that are to be posed, the first ones: none while it is hidden.
     wanted: Option<u32>,
     posed: Option<PoseRange>,
+    /// Whether another holds it beside its tree.
+    is_kept: bool,
 }
 
 #[derive(Clone)]
@@ -188,7 +190,8 @@ impl InstanceTables {
         state.posed = Some(PoseRange { beams, poses, first_workgroup });
         self.pose_end = self.pose_end.max(poses.offset + poses_of(beams));
         if let Some(tree) = self.trees.get_mut(row) {
-            (tree.first_pose, tree.beam_count) = (poses.offset, beams);
+            tree.first_pose = poses.offset;
+            tree.set_beams(beams);
         }
     }
 
@@ -198,7 +201,7 @@ impl InstanceTables {
         self.workgroups.remove(first_workgroup, poses_of(beams));
         self.freed_poses = true;
         if let Some(tree) = self.trees.get_mut(row) {
-            tree.beam_count = 0;
+            tree.set_beams(0);
         }
     }
 
@@ -229,9 +232,25 @@ impl InstanceTables {
         self.lacks_poses
     }
 
+    /// Writes how much is seen of a shape that comes or goes while its tree grows: see [`TreeRow::set_growth_fade`].
+    pub fn write_growth_fade(&mut self, row: u32, fade: i32) {
+        if let Some(tree) = self.trees.get_mut(row) {
+            tree.set_growth_fade(fade);
+        }
+    }
+
+    /// Keeps a row that is about to be freed, as it is: it has to be freed once more. It sleeps.
+    pub fn keep_row(&mut self, row: u32) {
+        if let Some(state) = self.rows.get_mut(row as usize) {
+            state.is_kept = true;
+            self.write_live(row, None);
+        }
+    }
+
     /// Frees a row and what it has.
     pub fn free_row(&mut self, row: u32) {
-        if row >= self.trees.len() {
+        let Some(state) = self.rows.get_mut(row as usize) else { return };
+        if std::mem::take(&mut state.is_kept) {
             return;
         }
         self.free_poses(row);
@@ -272,7 +291,7 @@ mod tests {
     }
 
     fn posed(tables: &InstanceTables) -> usize {
-        tables.trees.rows().iter().filter(|row| row.beam_count == BEAMS).count()
+        tables.trees.rows().iter().filter(|row| row.beams() == BEAMS).count()
     }
 
     #[test]
@@ -289,7 +308,7 @@ mod tests {
             rows.into_iter().for_each(|row| tables.free_row(row));
         }
         assert_eq!((tables.pose_count(), tables.trees.rows().len()), (poses, 100));
-        assert!(tables.trees.rows().iter().all(|row| row.beam_count == 0));
+        assert!(tables.trees.rows().iter().all(|row| row.beams() == 0));
     }
 
     #[test]
@@ -326,8 +345,8 @@ mod tests {
             .trees
             .rows()
             .iter()
-            .filter(|row| row.beam_count > 0)
-            .map(|row| (row.first_pose, row.beam_count + 1))
+            .filter(|row| row.beams() > 0)
+            .map(|row| (row.first_pose, row.beams() + 1))
             .collect();
         taken.sort_unstable();
         assert_eq!(taken.len(), 225);

@@ -5,6 +5,7 @@ use super::{
     materials::{MeshMaterials, SpeciesMaterials},
     part_demand::PartDemand,
     part_set::{LevelPart, PartSet},
+    tree_material::SwayMaterial,
 };
 use crate::{
     render::wind_exposure::WindExposure,
@@ -127,6 +128,12 @@ impl PreparedVariant {
         let wood = if is_bare && lod.bare_wood.is_some() { LevelPart::BareWood } else { LevelPart::Wood };
         let leaves = if lod.leaves.is_some() { PartSet::one(level, LevelPart::Leaves) } else { PartSet::EMPTY };
         PartSet::one(level, wood).and(leaves)
+    }
+
+    /// The bark that can be drawn in part, for wood that otherwise is not: that of the coarsest level that has one.
+    pub fn fading_bark(&self, is_bare: bool) -> Option<&Handle<SwayMaterial>> {
+        let wood = self.lods.iter().rev().map(|lod| lod.wood(is_bare)).find(|wood| wood.can_fade)?;
+        wood.materials(is_bare).swaying.as_ref()
     }
 
     /// Puts a mesh in its place, or none.

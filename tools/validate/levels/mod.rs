@@ -89,7 +89,11 @@ pub fn run(picture: &Path, only: Option<&str>, year: f32) -> Report {
     );
     report.record("coverage_difference_coarse_crowns", worst_coarse.coverage.abs(), "of crowns of a few large parts");
     report.record("colour_difference_coarse_crowns", worst_coarse.colour, "of crowns of a few large parts");
-    report.record("coverage_difference_worst", worst.coverage.abs(), "of a coarser level, as a share of the full tree's");
+    report.record(
+        "coverage_difference_worst",
+        worst.coverage.abs(),
+        "of a coarser level, as a share of the full tree's",
+    );
     report.record(
         "outline_difference_worst",
         worst.outline,
