@@ -22,6 +22,8 @@ const MANY: u32 = 10_000;
 const OPERATIONS: u32 = 12;
 /// Of the trees of a game, at most.
 const MOST_TREES: usize = 12;
+/// Ages of trees, years: each is drawn by a model of its own.
+const AGES: [f32; 2] = [2.0, 3.0];
 const ODD: [f32; 8] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 0.0, 1e-30, 1e30, 3.0];
 
 struct Game {
@@ -74,6 +76,10 @@ impl Game {
         (!self.own.is_empty()).then(|| self.own[self.random.random_range(0..self.own.len())])
     }
 
+    fn any_age(&mut self) -> f32 {
+        AGES[self.random.random_range(0..AGES.len())]
+    }
+
     fn any_species(&mut self) -> Handle<Species> {
         self.species[self.random.random_range(0..self.species.len())].clone()
     }
@@ -95,7 +101,7 @@ impl Game {
         if self.trees.len() == MOST_TREES {
             return;
         }
-        let tree = Tree::new(self.any_species()).with_age([2.0, 3.0][self.random.random_range(0..2)]);
+        let tree = Tree::new(self.any_species()).with_age(self.any_age());
         let place = self.place();
         let tree = self.spawn((tree, place));
         self.trees.push(tree);
@@ -103,7 +109,7 @@ impl Game {
 
     /// One thing that a game may do.
     fn act(&mut self) {
-        match self.random.random_range(0..22) {
+        match self.random.random_range(0..24) {
             0..3 => self.plant(),
             3 => self.any_own().into_iter().for_each(|entity| self.despawn(entity)),
             4 => {
@@ -196,6 +202,21 @@ impl Game {
                 let to_m = if self.random.random() { self.odd() } else { 25.0 };
                 self.app.insert_resource(TreeColliderSettings { to_m, ..default() });
             }
+            21 => {
+                let years = self.any_age();
+                self.with_tree(|mut tree, _| {
+                    tree.get_mut::<Tree>().into_iter().for_each(|mut tree| tree.age_years = Some(years));
+                });
+            }
+            22 => {
+                let (place, years) = (self.place().translation.xz(), self.any_age());
+                let grow = move |mut editor: ForestEditor| {
+                    if let Some((forest, stem)) = editor.nearest(place, 30.0) {
+                        editor.set_age(forest, stem.id, years).ok();
+                    }
+                };
+                self.app.world_mut().run_system_once(grow).expect("a system that runs");
+            }
             _ => {
                 let place = self.place();
                 self.with_tree(|mut tree, _| {
@@ -256,7 +277,7 @@ impl Game {
     /// Waits until all species are baked at the ages that are asked for, and there is a wind.
     fn warm_up(&mut self) {
         for species in self.species.clone() {
-            for age in [2.0, 3.0] {
+            for age in AGES {
                 self.spawn((Tree::new(species.clone()).with_age(age), Transform::default()));
             }
         }

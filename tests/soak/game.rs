@@ -163,6 +163,19 @@ impl Game {
                     world.write_message(TreeImpulse { tree, place, impulse_n_s: Vec3::X * 20.0 });
                 }
             }
+            31..35 => {
+                let age_years = AGES[self.random.random_range(0..2)];
+                self.edit(move |editor| {
+                    if let Some((forest, stem)) = editor.nearest(near.translation.xz(), 20.0) {
+                        editor.set_age(forest, stem.id, age_years).ok();
+                    }
+                });
+            }
+            35..38 => {
+                let age_years = AGES[self.random.random_range(0..2)];
+                let tree = self.own.last().and_then(|own| self.app.world_mut().get_mut::<Tree>(*own));
+                tree.into_iter().for_each(|mut tree| tree.age_years = Some(age_years));
+            }
             _ => {}
         }
     }
