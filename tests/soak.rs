@@ -19,7 +19,7 @@ use game::Game;
 /// What a minute is in the short run, s of the game's time.
 const SHORT_MINUTE_S: f32 = 8.0;
 /// Of the minutes, the first so many fill caches: of pipelines, of allocators, of levels of detail.
-const WARM_UP_MINUTES: usize = 2;
+const WARM_UP_MINUTES: usize = 4;
 
 /// Plays so many minutes, and counts after each.
 fn play(minutes: usize, minute_s: f32) -> Vec<Census> {
