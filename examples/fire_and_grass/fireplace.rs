@@ -1,17 +1,9 @@
 //! Logs in the fire, a ring of stones, and two trunks to sit on.
 
 use crate::ground;
-use bevy::{
-    asset::RenderAssetUsages,
-    image::{ImageAddressMode, ImageSampler, ImageSamplerDescriptor},
-    light::NotShadowCaster,
-    math::Affine2,
-    mesh::VertexAttributeValues,
-    prelude::*,
-    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
-};
+use bevy::{light::NotShadowCaster, math::Affine2, mesh::VertexAttributeValues, prelude::*};
 use bevy_windwood::{
-    texture::TextureData,
+    render::repeating_image,
     tree::{
         Species,
         bark::{Bark, bark_textures},
@@ -126,25 +118,11 @@ fn bark_material(images: &mut Assets<Image>, seed: u64) -> StandardMaterial {
     let [radius_m, length_m] = TRUNK_M;
     let repeats = Vec2::new(TAU * radius_m, length_m) / bark.tile_m;
     StandardMaterial {
-        base_color_texture: Some(images.add(image(&textures.base_colour, TextureFormat::Rgba8UnormSrgb))),
-        normal_map_texture: Some(images.add(image(&textures.normal, TextureFormat::Rgba8Unorm))),
+        base_color_texture: Some(images.add(repeating_image(&textures.base_colour))),
+        normal_map_texture: Some(images.add(repeating_image(&textures.normal))),
         uv_transform: Affine2::from_scale(repeats.round().max(Vec2::ONE)),
         ..matt(Color::WHITE)
     }
-}
-
-/// The finest mip.
-fn image(texture: &TextureData, format: TextureFormat) -> Image {
-    let size = Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: 1 };
-    let texels = texture.mips.first().cloned().unwrap_or_default();
-    let mut image = Image::new(size, TextureDimension::D2, texels, format, RenderAssetUsages::RENDER_WORLD);
-    let repeating = ImageSamplerDescriptor {
-        address_mode_u: ImageAddressMode::Repeat,
-        address_mode_v: ImageAddressMode::Repeat,
-        ..ImageSamplerDescriptor::linear()
-    };
-    image.sampler = ImageSampler::Descriptor(repeating);
-    image
 }
 
 /// A sphere with lumps.

@@ -43,4 +43,5 @@ pub use {
     lighting::TreeLighting,
     plugin::TreeRenderPlugin,
     settings::{LevelOfDetail, LevelStyle},
+    texture_image::repeating_image,
 };

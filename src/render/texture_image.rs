@@ -9,6 +9,12 @@ use bevy::{
 };
 use texpresso::{Algorithm, COLOUR_WEIGHTS_PERCEPTUAL, COLOUR_WEIGHTS_UNIFORM, Format, Params};
 
+/// A texture that repeats, as an image with all its mips: bark on a log, litter on a path.
+#[must_use]
+pub fn repeating_image(texture: &TextureData) -> Image {
+    image(texture, ImageAddressMode::Repeat, ALL_MIPS)
+}
+
 /// A texture as an image with its mips. `coarsest_mip` is the last one that is sampled.
 pub(crate) fn image(texture: &TextureData, address_mode: ImageAddressMode, coarsest_mip: f32) -> Image {
     let format = match texture.texels {

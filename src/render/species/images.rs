@@ -1,8 +1,7 @@
 //! The textures of a species as Bevy images: megabytes, laid out in the background.
 
 use crate::{
-    render::texture_image::{ALL_MIPS, Channels, device_image, image},
-    texture::TextureData,
+    render::texture_image::{ALL_MIPS, Channels, device_image},
     tree::{Species, bark::BarkTextures, textures::SpeciesTextures},
 };
 use bevy::{image::ImageAddressMode, prelude::*};
@@ -44,9 +43,4 @@ impl SpeciesImages {
             foliage_colour: textures.foliage_colour(),
         }
     }
-}
-
-/// A texture that repeats.
-pub(crate) fn repeating_image(texture: &TextureData) -> Image {
-    image(texture, ImageAddressMode::Repeat, ALL_MIPS)
 }

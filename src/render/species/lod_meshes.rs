@@ -1,7 +1,7 @@
 //! The meshes of the LOD levels of a species, made in the background, and the kind of material of each.
 
 use super::{
-    images::{SpeciesImages, repeating_image},
+    images::SpeciesImages,
     packed_vertices::{pack_leaves, pack_wood},
     part_set::{LevelPart, PartSet},
 };
@@ -10,7 +10,7 @@ use crate::{
         CrossedPolygons, EnvelopeLevel, EnvelopeVertices, LodBakeSettings, Scene, ThinnedMeshes, bind_to_swaying,
         crossed_polygons, swaying_beams, thinned,
     },
-    render::settings::LevelStyle,
+    render::{settings::LevelStyle, texture_image::repeating_image},
     tree::{
         Species, TreeModel,
         textures::{SpeciesTextures, species_textures},
