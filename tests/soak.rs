@@ -35,8 +35,8 @@ fn play(minutes: usize, minute_s: f32) -> Vec<Census> {
 }
 
 /// Growth per minute, of values at minutes 0, 1, 2 and so on: the median of the slopes between any two of them (Theil 1950, Sen 1968). A leak
-/// is in all of these. Least squares would take a step for growth: some 40 MB come and go from minute to minute, of nothing that is counted
-/// here or is on the GPU.
+/// is in all of these. Least squares would take a step for growth: of nothing that is counted here or is on the GPU, allocators take some
+/// 10 or 40 MB at once.
 fn slope(values: &[f64]) -> f64 {
     let later = |(from, &value): (usize, &f64)| {
         let slopes = values.iter().enumerate().skip(from + 1);
@@ -51,7 +51,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// The median of what is added from minute to minute: what leaks does so in most of them. Slopes over few minutes would take a single
-/// step for growth, and there is one: the sixth minute adds some 25 MB.
+/// step for growth.
 fn median_step(values: &[f64]) -> f64 {
     median(values.windows(2).map(|pair| pair[1] - pair[0]).collect())
 }

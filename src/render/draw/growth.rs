@@ -17,8 +17,6 @@ use bevy::prelude::*;
 
 /// How long a fade takes, s. By eye: within it a step of age is seen to grow, and not to change.
 const FADE_S: f32 = 1.5;
-/// `STEPS` of `cross_fade.wesl`.
-const STEPS: i32 = 1024;
 
 /// The shape that a tree had before it grew. It keeps its row in the tables: taking the component away frees that.
 #[derive(Component, Debug)]
@@ -94,11 +92,10 @@ pub(crate) fn fade_former_shapes(
             drawn.selection = None;
             continue;
         }
-        let steps = (former.faded * STEPS as f32).round() as i32;
-        tables.write_growth_fade(former.row, steps);
+        tables.write_growth_fade(former.row, former.faded);
         tables.write_transform(former.row, at, tree.season_shift(), former.height_m);
         if let Some(row) = instance.row {
-            tables.write_growth_fade(row, steps - STEPS);
+            tables.write_growth_fade(row, former.faded - 1.0);
         }
     }
 }
@@ -112,6 +109,6 @@ pub(crate) fn free_former_row(
     let Ok((former, instance)) = trees.get(discarded.entity) else { return };
     tables.free_row(former.row);
     if let Some(row) = instance.and_then(|instance| instance.row) {
-        tables.write_growth_fade(row, 0);
+        tables.write_growth_fade(row, 0.0);
     }
 }

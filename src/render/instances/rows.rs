@@ -182,9 +182,10 @@ impl TreeRow {
         self.beams_and_fade = self.beams_and_fade & !0xffff | beams.min(0xffff);
     }
 
-    /// A state of the cross-fade, as in `cross_fade.wesl`: that of a shape that comes or goes while its tree grows, 0 for any other.
-    pub fn set_growth_fade(&mut self, fade: i32) {
-        self.beams_and_fade = self.beams_and_fade & 0xffff | fade.cast_unsigned() << 16;
+    /// How much of a shape has faded while its tree grows, 0 to 1, or has still to come, -1 to 0; 0 for any other. It has 16 bits.
+    pub fn set_growth_fade(&mut self, fade: f32) {
+        let bits = (fade.clamp(-1.0, 1.0) * 32_767.0).round() as i16 as u16;
+        self.beams_and_fade = self.beams_and_fade & 0xffff | u32::from(bits) << 16;
     }
 
     pub fn set_canopy(&mut self, PackedCanopy { profile, exposure }: PackedCanopy) {
@@ -248,11 +249,12 @@ mod tests {
     #[test]
     fn beams_and_the_fade_of_growth_share_a_word() {
         let mut row = TreeRow::new(0);
-        for (beams, fade) in [(0, 0), (65_535, -1024), (700, 1023), (1, -1)] {
-            row.set_beams(beams);
+        for (beams, fade) in [(0, 0.0), (65_535, -1.0), (700, 0.999), (1, -1e-3), (7, f32::NAN)] {
             row.set_growth_fade(fade);
             row.set_beams(beams);
-            assert_eq!((row.beams(), row.beams_and_fade.cast_signed() >> 16), (beams, fade));
+            let back = ((row.beams_and_fade >> 16) as u16).cast_signed();
+            assert_eq!(row.beams(), beams);
+            assert!((f32::from(back) / 32_767.0 - fade).abs() < 2e-5 || fade.is_nan() && back == 0, "{fade}: {back}");
         }
     }
 

@@ -233,7 +233,7 @@ impl InstanceTables {
     }
 
     /// Writes how much is seen of a shape that comes or goes while its tree grows: see [`TreeRow::set_growth_fade`].
-    pub fn write_growth_fade(&mut self, row: u32, fade: i32) {
+    pub fn write_growth_fade(&mut self, row: u32, fade: f32) {
         if let Some(tree) = self.trees.get_mut(row) {
             tree.set_growth_fade(fade);
         }
