@@ -11,9 +11,10 @@ use bevy_windwood::{
         ForestPlan,
         plan::{Area, Shape, Stock},
     },
+    tree::SpeciesModels,
 };
 use image::RgbaImage;
-use std::time::Duration;
+use std::{fs, time::Duration};
 use support::capture;
 
 const SIZE: (u32, u32) = (160, 160);
@@ -157,4 +158,55 @@ fn stems_of_a_forest_that_grow_older_stay_and_do_not_pop() {
     assert!(world.query::<&Tree>().iter(world).all(|tree| tree.age_years == Some(AGES_YEARS[1])));
     assert_eq!(world.resource::<Messages<TreeEntered>>().len() + world.resource::<Messages<TreeLeft>>().len(), 0);
     assert!(world.get::<ForestCells>(forest).is_some_and(ForestCells::is_up_to_date));
+}
+
+/// A birch in winter and one in summer, of a species that is edited again and again while they grow: they end as if they had always been so.
+#[test]
+fn trees_that_grow_while_their_species_is_edited_keep_apart() {
+    const MATURE_YEARS: [f32; 2] = [60.0, 45.0];
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/species/birch.species.ron");
+    let birch = Species::from_ron(&fs::read_to_string(file).expect("it is shipped")).expect("it is valid");
+    let edited = |mature_years: f32| {
+        let mut species = Species { variants: 1, ..birch.clone() };
+        species.age.mature_years = mature_years;
+        species
+    };
+    let plant = |viewer: &mut Viewer, mature_years: f32| {
+        let world = viewer.app.world_mut();
+        let species = world.resource_mut::<Assets<Species>>().add(edited(mature_years));
+        let birch = |x: f32, days: f32| {
+            let tree = Tree::new(species.clone()).with_age(mature_years).with_season(days);
+            (tree, Transform::from_xyz(x, 0.0, 0.0))
+        };
+        let trees = [world.spawn(birch(-5.0, -180.0)).id(), world.spawn(birch(5.0, 0.0)).id()];
+        viewer.settle();
+        (species, trees)
+    };
+    let mut viewer = Viewer::new();
+    let (species, trees) = plant(&mut viewer, MATURE_YEARS[0]);
+    for round in 1..10 {
+        let mature_years = MATURE_YEARS[round % 2];
+        let world = viewer.app.world_mut();
+        world.resource_mut::<Assets<Species>>().insert(&species, edited(mature_years)).expect("it is there");
+        for tree in trees {
+            world.get_mut::<Tree>(tree).expect("it stands").age_years = Some(mature_years);
+        }
+        // Of what is asked for, some is there before the next edit, and some is not.
+        for _ in 0..3 * round {
+            viewer.advance();
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+    let is_baked = support::update_until(&mut viewer.app, |world| !world.resource::<SpeciesModels>().is_baking());
+    assert!(is_baked, "the species was not baked in time");
+    // Meshes come some time after models. Then the last shapes fade.
+    for _ in 0..400 {
+        viewer.advance();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    viewer.settle();
+    let edited_picture = viewer.picture();
+    let mut fresh = Viewer::new();
+    plant(&mut fresh, MATURE_YEARS[1]);
+    assert_eq!(difference(&fresh.picture(), &edited_picture), 0.0);
 }

@@ -91,9 +91,10 @@ impl Assigner<'_, '_> {
         is_there
     }
 
-    /// Whether a tree is older or younger than it was, and not of a species that was changed: then its former variant is gone.
+    /// Whether a tree that can be drawn is older or younger than it was, and not of a species that was changed: then its former variant is gone.
     fn has_grown(&self, tree: &Tree, grown: &Grown, former: &TreeInstance) -> bool {
-        former.model != grown.model.id() && self.library.variant(tree.species.id(), former.model).is_some()
+        let is_prepared = |model| self.library.variant(tree.species.id(), model).is_some();
+        former.model != grown.model.id() && is_prepared(former.model) && is_prepared(grown.model.id())
     }
 
     /// Gives a tree an instance, if its model is prepared. Returns whether it was. The row of an instance that it had before is freed

@@ -45,8 +45,8 @@ struct RowState {
     /// Beams that are to be posed, the first ones: none while it is hidden.
     wanted: Option<u32>,
     posed: Option<PoseRange>,
-    /// Whether another holds it beside its tree.
-    is_kept: bool,
+    /// How many hold it beside its tree.
+    keepers: u32,
 }
 
 #[derive(Clone)]
@@ -242,7 +242,7 @@ impl InstanceTables {
     /// Keeps a row that is about to be freed, as it is: it has to be freed once more. It sleeps.
     pub fn keep_row(&mut self, row: u32) {
         if let Some(state) = self.rows.get_mut(row as usize) {
-            state.is_kept = true;
+            state.keepers += 1;
             self.write_live(row, None);
         }
     }
@@ -250,7 +250,8 @@ impl InstanceTables {
     /// Frees a row and what it has.
     pub fn free_row(&mut self, row: u32) {
         let Some(state) = self.rows.get_mut(row as usize) else { return };
-        if std::mem::take(&mut state.is_kept) {
+        if state.keepers > 0 {
+            state.keepers -= 1;
             return;
         }
         self.free_poses(row);
@@ -309,6 +310,21 @@ mod tests {
         }
         assert_eq!((tables.pose_count(), tables.trees.rows().len()), (poses, 100));
         assert!(tables.trees.rows().iter().all(|row| row.beams() == 0));
+    }
+
+    #[test]
+    fn a_row_is_free_once_all_who_hold_it_have_freed_it() {
+        let (mut tables, id) = tables(100);
+        let row = tables.allocate_row(id).expect("there is room");
+        (0..2).for_each(|_| tables.keep_row(row));
+        for _ in 0..2 {
+            tables.free_row(row);
+            let other = tables.allocate_row(id).expect("there is room");
+            assert_ne!(other, row);
+            tables.free_row(other);
+        }
+        tables.free_row(row);
+        assert_eq!([(); 2].map(|()| tables.allocate_row(id)), [Some(row), Some(row + 1)]);
     }
 
     #[test]
