@@ -160,10 +160,14 @@ fn stems_of_a_forest_that_grow_older_stay_and_do_not_pop() {
     assert!(world.get::<ForestCells>(forest).is_some_and(ForestCells::is_up_to_date));
 }
 
-/// A birch in winter and one in summer, of a species that is edited again and again while they grow: they end as if they had always been so.
+/// Birches in winter and summer, of a species that is edited again and again while they grow, and two that come after that: they look as if
+/// they had always been so.
 #[test]
 fn trees_that_grow_while_their_species_is_edited_keep_apart() {
     const MATURE_YEARS: [f32; 2] = [60.0, 45.0];
+    // Places, m, and how far they are ahead of the season, days: those that grow, and those that come later.
+    const GROWING: [(f32, f32); 2] = [(-6.0, -180.0), (6.0, 0.0)];
+    const LATER: [(f32, f32); 2] = [(-2.0, 0.0), (2.0, -180.0)];
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/species/birch.species.ron");
     let birch = Species::from_ron(&fs::read_to_string(file).expect("it is shipped")).expect("it is valid");
     let edited = |mature_years: f32| {
@@ -171,25 +175,28 @@ fn trees_that_grow_while_their_species_is_edited_keep_apart() {
         species.age.mature_years = mature_years;
         species
     };
-    let plant = |viewer: &mut Viewer, mature_years: f32| {
+    let plant = |viewer: &mut Viewer, species: &Handle<Species>, mature_years: f32, trees: &[(f32, f32)]| {
         let world = viewer.app.world_mut();
-        let species = world.resource_mut::<Assets<Species>>().add(edited(mature_years));
-        let birch = |x: f32, days: f32| {
+        let tree = |&(x, days): &(f32, f32)| {
             let tree = Tree::new(species.clone()).with_age(mature_years).with_season(days);
-            (tree, Transform::from_xyz(x, 0.0, 0.0))
+            world.spawn((tree, Transform::from_xyz(x, 0.0, 0.0))).id()
         };
-        let trees = [world.spawn(birch(-5.0, -180.0)).id(), world.spawn(birch(5.0, 0.0)).id()];
+        let trees: Vec<Entity> = trees.iter().map(tree).collect();
         viewer.settle();
-        (species, trees)
+        trees
+    };
+    let add = |viewer: &mut Viewer, mature_years: f32| {
+        viewer.app.world_mut().resource_mut::<Assets<Species>>().add(edited(mature_years))
     };
     let mut viewer = Viewer::new();
-    let (species, trees) = plant(&mut viewer, MATURE_YEARS[0]);
+    let species = add(&mut viewer, MATURE_YEARS[0]);
+    let trees = plant(&mut viewer, &species, MATURE_YEARS[0], &GROWING);
     for round in 1..10 {
         let mature_years = MATURE_YEARS[round % 2];
         let world = viewer.app.world_mut();
         world.resource_mut::<Assets<Species>>().insert(&species, edited(mature_years)).expect("it is there");
-        for tree in trees {
-            world.get_mut::<Tree>(tree).expect("it stands").age_years = Some(mature_years);
+        for tree in &trees {
+            world.get_mut::<Tree>(*tree).expect("it stands").age_years = Some(mature_years);
         }
         // Of what is asked for, some is there before the next edit, and some is not.
         for _ in 0..3 * round {
@@ -204,9 +211,11 @@ fn trees_that_grow_while_their_species_is_edited_keep_apart() {
         viewer.advance();
         std::thread::sleep(Duration::from_millis(5));
     }
-    viewer.settle();
+    plant(&mut viewer, &species, MATURE_YEARS[1], &LATER);
+    (0..60).for_each(|_| viewer.advance());
     let edited_picture = viewer.picture();
     let mut fresh = Viewer::new();
-    plant(&mut fresh, MATURE_YEARS[1]);
+    let species = add(&mut fresh, MATURE_YEARS[1]);
+    plant(&mut fresh, &species, MATURE_YEARS[1], &[GROWING, LATER].concat());
     assert_eq!(difference(&fresh.picture(), &edited_picture), 0.0);
 }
