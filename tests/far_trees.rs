@@ -39,7 +39,7 @@ fn picture(
     let plan = app.world_mut().resource_mut::<Assets<ForestPlan>>().add(plan);
     let world = app.world_mut();
     world.insert_resource(season);
-    world.insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
+    world.insert_resource(ClearColor(support::BACKGROUND));
     world.insert_resource(GlobalAmbientLight { brightness: 2000.0, ..default() });
     // The full trees, not coarser levels.
     world.resource_mut::<LevelOfDetail>().style = LevelStyle::Full;

@@ -81,7 +81,7 @@ impl OneTree {
     fn new() -> Self {
         let mut app = headless_app(Duration::from_millis(16), None);
         capture::begin(&mut app).expect("a graphics device");
-        app.insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
+        app.insert_resource(ClearColor(support::BACKGROUND));
         let species = app.world().resource::<AssetServer>().load("species/birch.species.ron");
         app.world_mut().spawn((Tree::new(species).with_age(12.0), Transform::default()));
         let target = capture::target(&mut app, Self::SIZE);

@@ -37,8 +37,7 @@ impl Viewer {
         capture::begin(&mut app).expect("a graphics device");
         let target = capture::target(&mut app, SIZE);
         let world = app.world_mut();
-        world.insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
-        world.insert_resource(GlobalAmbientLight { brightness: 900.0, ..default() });
+        support::light_plainly(world);
         world.insert_resource(Wind { speed: 0.0, ..default() });
         let eye = Transform::from_xyz(0.0, 9.0, 30.0).looking_at(Vec3::new(0.0, 9.0, 0.0), Vec3::Y);
         world.spawn((capture::camera(&target), eye));

@@ -17,7 +17,7 @@ fn row_of_firs() -> App {
     capture::begin(&mut app).expect("a graphics device");
     let species = app.world().resource::<AssetServer>().load("species/fir.species.ron");
     let world = app.world_mut();
-    world.insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
+    world.insert_resource(ClearColor(support::BACKGROUND));
     for tree in 0..8_u8 {
         let at = Vec3::X * (6.0 * f32::from(tree) - 21.0);
         world.spawn((Tree::new(species.clone()), Transform::from_translation(at)));

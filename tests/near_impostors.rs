@@ -35,8 +35,7 @@ fn picture(eye: Vec3, spawn: impl FnOnce(&mut World)) -> RgbaImage {
     capture::begin(&mut app).expect("a graphics device");
     let target = capture::target(&mut app, SIZE);
     let world = app.world_mut();
-    world.insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
-    world.insert_resource(GlobalAmbientLight { brightness: 900.0, ..default() });
+    support::light_plainly(world);
     world.resource_mut::<LevelOfDetail>().style = LevelStyle::Full;
     spawn(world);
     let lens = Projection::Perspective(PerspectiveProjection { fov: 0.3, ..default() });

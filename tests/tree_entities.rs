@@ -21,8 +21,7 @@ fn app_with_firs(places: &[Transform]) -> (App, Vec<Entity>, Handle<Image>) {
     let target = capture::target(&mut app, SIZE);
     let species = app.world().resource::<AssetServer>().load("species/fir.species.ron");
     let world = app.world_mut();
-    world.insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
-    world.insert_resource(GlobalAmbientLight { brightness: 900.0, ..default() });
+    support::light_plainly(world);
     let eye = Transform::from_xyz(0.0, 11.0, 50.0).looking_at(Vec3::Y * 10.0, Vec3::Y);
     world.spawn((capture::camera(&target), eye));
     let trees: Vec<Entity> =

@@ -1,6 +1,6 @@
 //! A small forest of firs in front of a camera.
 
-use super::{capture, covered, headless_app, update_until};
+use super::{capture, covered, headless_app, light_plainly, update_until};
 use bevy::{prelude::*, render::render_resource::WgpuLimits};
 use bevy_windwood::{
     prelude::*,
@@ -37,8 +37,7 @@ impl TestForest {
         let plan = ForestPlan { seed: 3, cell_m: 32.0, areas: vec![area], ..default() };
         let world = app.world_mut();
         let plan = world.resource_mut::<Assets<ForestPlan>>().add(plan);
-        world.insert_resource(ClearColor(Color::srgb(1.0, 0.0, 1.0)));
-        world.insert_resource(GlobalAmbientLight { brightness: 900.0, ..default() });
+        light_plainly(world);
         world.spawn((Forest::new(plan), ForestSettings { trees_per_frame: 10_000, cells_at_once: 64, ..settings }));
         let eye = Transform::from_xyz(0.0, 12.0, 0.0).looking_to(Vec3::NEG_Z, Vec3::Y);
         let camera = world.spawn((capture::camera(&target), eye)).id();

@@ -51,7 +51,16 @@ pub fn update_until(app: &mut App, is_done: impl Fn(&mut World) -> bool) -> bool
     })
 }
 
-/// Whether a pixel is of the clear colour of our pictures, magenta, which nothing else has.
+/// The clear colour of our pictures, magenta, which nothing else has.
+pub const BACKGROUND: Color = Color::srgb(1.0, 0.0, 1.0);
+
+/// Has everything stand before the background, in light from all sides.
+pub fn light_plainly(world: &mut World) {
+    world.insert_resource(ClearColor(BACKGROUND));
+    world.insert_resource(GlobalAmbientLight { brightness: 900.0, ..default() });
+}
+
+/// Whether a pixel is of the background.
 pub fn is_background(pixel: &Rgba<u8>) -> bool {
     pixel.0[0] > 200 && pixel.0[1] < 60 && pixel.0[2] > 200
 }
