@@ -163,10 +163,11 @@ impl ForestCells {
         }
     }
 
-    /// Whether all changes that were taken over show everywhere, near and far, and the wind among the trees has followed them.
+    /// Whether all changes that were taken over show everywhere, near and far, and the wind among the trees has followed them: not before
+    /// that wind is known, for which the species have to be loaded and measured.
     #[must_use]
     pub fn is_up_to_date(&self) -> bool {
         let is_planted = self.changed_tiles.is_empty() && self.replanting.is_empty();
-        is_planted && (self.stand.get().is_none() || !self.stand.is_due() && self.near.has_canopies())
+        is_planted && self.stand.get().is_some() && !self.stand.is_due() && self.near.has_canopies()
     }
 }

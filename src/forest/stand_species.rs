@@ -61,7 +61,7 @@ impl StandSpeciesLibrary {
     }
 }
 
-/// Measures the species of forests, and gives each forest its stand when all of them are known or cannot be loaded.
+/// Measures the species of forests, and gives each forest its stand when each of them is known, cannot be loaded or is not valid.
 pub(super) fn prepare_stands(
     mut library: ResMut<StandSpeciesLibrary>,
     mut events: MessageReader<AssetEvent<Species>>,
@@ -83,8 +83,12 @@ pub(super) fn prepare_stands(
             library.measure(*id, species);
         }
     }
-    for handle in forests.iter().filter(|forest| forest.stand.get().is_none()).flat_map(ForestCells::species) {
-        if let Some(species) = valid(handle.id()).filter(|_| !library.is_asked_for(handle.id())) {
+    // One that was not valid, or could not be loaded, may be so now.
+    let may_be_new = species.is_changed();
+    for handle in forests.iter().filter(|it| may_be_new || it.stand.get().is_none()).flat_map(ForestCells::species) {
+        if !library.is_asked_for(handle.id())
+            && let Some(species) = valid(handle.id())
+        {
             library.measure(handle.id(), species);
         }
     }
@@ -114,7 +118,9 @@ pub(super) fn prepare_stands(
             continue;
         }
         let is_settled = |handle: &Handle<Species>| {
-            known.contains_key(&handle.id()) || matches!(assets.get_load_state(handle), Some(LoadState::Failed(_)))
+            known.contains_key(&handle.id())
+                || matches!(assets.get_load_state(handle), Some(LoadState::Failed(_)))
+                || species.get(handle).is_some_and(|species| species.validate().is_err())
         };
         if forest.species().iter().all(is_settled) {
             let now = |handle: &Handle<Species>| known.get(&handle.id()).map(|known| known.in_season(season.wrapped()));
