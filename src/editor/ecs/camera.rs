@@ -3,14 +3,23 @@
 use super::workbench::Workbench;
 use bevy::{
     camera::{CameraOutputMode, RenderTarget, visibility::RenderLayers},
+    core_pipeline::upscaling::upscaling,
+    ecs::schedule::{ScheduleBuildSettings, ScheduleLabel},
     prelude::*,
-    render::render_resource::BlendState,
+    render::{RenderApp, camera::CameraRenderGraph, render_resource::BlendState},
 };
-use bevy_egui::{EguiContexts, PrimaryEguiContext};
+use bevy_egui::{
+    EguiContexts, PrimaryEguiContext,
+    render::{egui_pass, prepare_egui_pass},
+};
 
 /// The camera of the panels.
 #[derive(Component)]
 pub(super) struct PanelCamera;
+
+/// What is drawn for the camera of the panels: these alone. What Bevy does for any other camera costs as much as the panels themselves.
+#[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
+struct DrawPanels;
 
 /// It draws after all others.
 const ORDER: isize = 1000;
@@ -19,6 +28,15 @@ const MADE_FOR: Vec2 = Vec2::new(1280.0, 720.0);
 const GROWTH: f32 = 0.5;
 /// Steps of their size: letters are drawn anew for each.
 const ZOOM_STEP: f32 = 0.25;
+
+/// Adds the passes.
+pub(super) fn plugin(app: &mut App) {
+    let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
+    let mut passes = Schedule::new(DrawPanels);
+    passes.set_build_settings(ScheduleBuildSettings { auto_insert_apply_deferred: false, ..default() });
+    passes.add_systems((prepare_egui_pass, egui_pass, upscaling).chain());
+    render.add_schedule(passes);
+}
 
 /// Spawns the camera when the workbench is opened for the first time, and switches it off while it is closed.
 pub(super) fn switch_camera(
@@ -37,7 +55,8 @@ pub(super) fn switch_camera(
     commands.spawn((
         PanelCamera,
         PrimaryEguiContext,
-        Camera2d,
+        CameraRenderGraph::new(DrawPanels),
+        Projection::Orthographic(OrthographicProjection::default_2d()),
         Camera {
             order: ORDER,
             output_mode: CameraOutputMode::Write {

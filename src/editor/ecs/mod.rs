@@ -7,6 +7,7 @@ mod land;
 mod manners;
 mod measure;
 mod mesh;
+mod panel_layout;
 mod panels;
 mod show_ground;
 mod show_species;
@@ -84,7 +85,7 @@ impl Plugin for EditorPlugin {
             .init_resource::<AppliedPlan>()
             .init_resource::<BuiltGround>()
             .init_resource::<Measuring>()
-            .add_plugins(manners::plugin)
+            .add_plugins((camera::plugin, manners::plugin, panel_layout::plugin))
             .add_systems(PreUpdate, scale_panels.run_if(is_open))
             .add_systems(
                 Update,

@@ -90,6 +90,7 @@ pub fn plot(ui: &mut Ui, form: &PlotForm, curves: Vec<Curve>) {
     if is_log_y {
         plot = plot.y_grid_spacer(decades).y_axis_formatter(|mark, _| power_of_ten(mark));
     }
+    let width = ui.available_width();
     plot.show(ui, |plot| {
         for (name, at) in form.marks {
             let at = if is_log_x { at.max(1e-12).log10() } else { *at };
@@ -104,11 +105,29 @@ pub fn plot(ui: &mut Ui, form: &PlotForm, curves: Vec<Curve>) {
             };
             let points =
                 curve.points.into_iter().map(place).filter(|point| point.iter().all(|value| value.is_finite()));
-            let points = PlotPoints::from_iter(points);
+            let points = PlotPoints::from(thinned(points.collect(), width));
             let style = if curve.is_target { LineStyle::dashed_loose() } else { LineStyle::Solid };
             plot.line(Line::new(curve.name, points).color(curve.colour).style(style).width(1.6));
         }
     });
+}
+
+/// A curve of evenly spaced points without those that cannot be told apart in a plot of that width, points of the screen: of what lies within
+/// two of these the least and the greatest.
+fn thinned(points: Vec<[f64; 2]>, width: f32) -> Vec<[f64; 2]> {
+    let runs = (0.5 * width).max(1.0) as usize;
+    if points.len() <= 4 * runs {
+        return points;
+    }
+    let ends = |run: &[[f64; 2]]| {
+        let by_value = |a: &&[f64; 2], b: &&[f64; 2]| a[1].total_cmp(&b[1]);
+        let (least, greatest) = (run.iter().min_by(by_value), run.iter().max_by(by_value));
+        let mut ends: Vec<[f64; 2]> = least.into_iter().chain(greatest).copied().collect();
+        ends.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        ends.dedup();
+        ends
+    };
+    points.chunks(points.len().div_ceil(runs)).flat_map(ends).collect()
 }
 
 /// The points of bands.
@@ -130,4 +149,25 @@ fn power_of_ten(mark: GridMark) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let digits: String = decade.abs().to_string().bytes().map(|digit| DIGITS[usize::from(digit - b'0')]).collect();
     format!("10{}{digits}", if decade < 0 { "⁻" } else { "" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thinned_curve_keeps_its_peaks_and_its_order() {
+        let curve: Vec<[f64; 2]> = (0..4096).map(|i| [f64::from(i), (f64::from(i) * 0.9).sin()]).collect();
+        let mut spiky = curve.clone();
+        (spiky[1234][1], spiky[1235][1]) = (7.0, -5.0);
+        let thin = thinned(spiky.clone(), 400.0);
+        assert!(thin.len() <= 400, "{}", thin.len());
+        assert!(thin.contains(&spiky[1234]) && thin.contains(&spiky[1235]));
+        assert!(thin.is_sorted_by(|a, b| a[0] < b[0]));
+        assert!(thin.iter().all(|point| spiky.contains(point)));
+        // As it is where that saves little, and where there is no room at all it does not end in a division by nothing.
+        assert_eq!(thinned(curve[..700].to_vec(), 400.0), curve[..700]);
+        assert_eq!(thinned(curve, 0.0).len(), 2);
+        assert_eq!(thinned(Vec::new(), f32::NAN), Vec::<[f64; 2]>::new());
+    }
 }

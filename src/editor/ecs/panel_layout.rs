@@ -1,0 +1,210 @@
+//! When panels are laid out anew: egui's layout of all of them is dear, and from most frames to the next nothing in them changes.
+//!
+//! They are laid out when there is input, when egui asks for it (as while something fades in, or where a cursor blinks), when a program has
+//! changed the workbench, when the picture under handles moves, and some times a second for what changes by itself: counts, plots, progress.
+//! In between, what was painted last is painted again.
+
+use super::{camera::PanelCamera, workbench::Workbench};
+use bevy::prelude::*;
+use bevy_egui::{
+    EguiContextSettings, EguiFullOutput, EguiInput, EguiOutput, EguiPostUpdateSet, EguiPreUpdateSet, EguiRenderOutput,
+    egui::{ClippedPrimitive, FullOutput, PlatformOutput, Rect, ViewportId},
+};
+use std::time::Duration;
+
+/// What changes by itself is shown so often.
+const REFRESH: Duration = Duration::from_millis(100);
+
+/// The layout of the panels.
+#[derive(Resource, Default)]
+struct PanelLayout {
+    /// What was painted last, and what egui told the window then.
+    painted: Vec<ClippedPrimitive>,
+    told: PlatformOutput,
+    /// The clock at the next layout, if nothing else asks for one.
+    next: Duration,
+    /// The window and the picture under the panels as they were laid out for them.
+    screen: Option<Rect>,
+    picture: Mat4,
+}
+
+/// Adds the systems.
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<PanelLayout>()
+        .add_systems(PreUpdate, decide.after(EguiPreUpdateSet::ProcessInput).before(EguiPreUpdateSet::BeginPass))
+        .add_systems(
+            PostUpdate,
+            (
+                keep_output.after(EguiPostUpdateSet::EndPass).before(EguiPostUpdateSet::ProcessOutput),
+                keep_paint.after(EguiPostUpdateSet::ProcessOutput).before(EguiPostUpdateSet::PostProcessOutput),
+            ),
+        );
+}
+
+/// Decides whether the panels are laid out in this frame. While the workbench is closed that is for input alone, which egui must not miss.
+fn decide(
+    time: Res<Time<Real>>,
+    workbench: Res<Workbench>,
+    mut layout: ResMut<PanelLayout>,
+    mut panels: Query<(&mut EguiContextSettings, &EguiInput), With<PanelCamera>>,
+) {
+    let Ok((mut settings, input)) = panels.single_mut() else { return };
+    let has_input = !input.events.is_empty() || !input.hovered_files.is_empty() || !input.dropped_files.is_empty();
+    let has_handles = workbench.has_turntable || workbench.panel.is_of_land();
+    let picture = workbench.land.view.as_ref().filter(|_| has_handles);
+    let picture = picture.map_or(Mat4::IDENTITY, |view| view.clip_from_world);
+    let has_moved = workbench.is_open && (picture != layout.picture || input.screen_rect != layout.screen);
+    let is_due = has_input || workbench.is_changed() || has_moved || time.elapsed() >= layout.next;
+    if is_due {
+        (layout.picture, layout.screen) = (picture, input.screen_rect);
+    }
+    if settings.run_manually == is_due {
+        settings.run_manually = !is_due;
+    }
+}
+
+/// Keeps what egui tells after a layout; without one, has it tell the same.
+fn keep_output(
+    time: Res<Time<Real>>,
+    workbench: Res<Workbench>,
+    mut layout: ResMut<PanelLayout>,
+    mut panels: Query<(&EguiContextSettings, &EguiOutput, &mut EguiFullOutput), With<PanelCamera>>,
+) {
+    let Ok((settings, known, mut output)) = panels.single_mut() else { return };
+    if settings.run_manually {
+        output.0 = Some(FullOutput {
+            platform_output: layout.told.clone(),
+            pixels_per_point: known.pixels_per_point,
+            ..FullOutput::default()
+        });
+    } else if let Some(output) = &output.0 {
+        let asked = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |root| root.repaint_delay);
+        let refresh = if workbench.is_open { REFRESH } else { Duration::MAX };
+        layout.next = time.elapsed().saturating_add(asked.min(refresh));
+        // What happened once is not told again. What screen readers know is: else Bevy would tell them of its own interface in between.
+        layout.told = PlatformOutput { commands: Vec::new(), events: Vec::new(), ..output.platform_output.clone() };
+    }
+}
+
+/// Keeps what is painted after a layout; without one, has it painted again.
+fn keep_paint(
+    mut layout: ResMut<PanelLayout>,
+    mut panels: Query<(&EguiContextSettings, &mut EguiRenderOutput), With<PanelCamera>>,
+) {
+    let Ok((settings, mut output)) = panels.single_mut() else { return };
+    if settings.run_manually {
+        output.paint_jobs.clone_from(&layout.painted);
+    } else {
+        layout.painted.clone_from(&output.paint_jobs);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::time::TimeUpdateStrategy;
+    use bevy_egui::egui::{Event, Mesh, Pos2, epaint::Primitive};
+
+    const FRAME: Duration = Duration::from_millis(10);
+
+    /// An app in which a frame takes 10 ms, and egui's part is played by `frame`.
+    fn app() -> App {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, plugin))
+            .insert_resource(TimeUpdateStrategy::ManualDuration(FRAME))
+            .insert_resource(Workbench::new(None, None, None, false));
+        app.world_mut().resource_mut::<Workbench>().is_open = true;
+        app.world_mut().spawn((
+            PanelCamera,
+            EguiContextSettings::default(),
+            EguiInput::default(),
+            EguiOutput::default(),
+            EguiFullOutput::default(),
+            EguiRenderOutput::default(),
+        ));
+        app
+    }
+
+    /// A frame, and whether panels were laid out in it. If they were, egui asks to be called again after `delay`, and paints `number` things.
+    fn frame(app: &mut App, delay: Duration, number: usize) -> bool {
+        let world = app.world_mut();
+        world.run_schedule(First);
+        world.run_schedule(PreUpdate);
+        let mut panels = world.query::<(&EguiContextSettings, &mut EguiInput, &mut EguiFullOutput)>();
+        let (settings, mut input, mut output) = panels.single_mut(world).expect("a camera");
+        let is_laid_out = !settings.run_manually;
+        if is_laid_out {
+            input.take();
+            let mut laid_out = FullOutput::default();
+            laid_out.viewport_output.entry(ViewportId::ROOT).or_insert_with(viewport).repaint_delay = delay;
+            output.0 = Some(laid_out);
+        }
+        world.run_system_cached(keep_output).expect("it runs");
+        let mut panels = world.query::<(&mut EguiFullOutput, &mut EguiRenderOutput)>();
+        let (mut output, mut painted) = panels.single_mut(world).expect("a camera");
+        output.0.take().expect("there is always something to draw");
+        let job = ClippedPrimitive { clip_rect: Rect::EVERYTHING, primitive: Primitive::Mesh(Mesh::default()) };
+        painted.paint_jobs = vec![job; if is_laid_out { number } else { 0 }];
+        world.run_system_cached(keep_paint).expect("it runs");
+        is_laid_out
+    }
+
+    fn viewport() -> bevy_egui::egui::ViewportOutput {
+        bevy_egui::egui::Context::default()
+            .run_ui(default(), |_| ())
+            .viewport_output
+            .remove(&ViewportId::ROOT)
+            .expect("the root")
+    }
+
+    fn painted(app: &mut App) -> usize {
+        let world = app.world_mut();
+        world.query::<&EguiRenderOutput>().single(world).expect("a camera").paint_jobs.len()
+    }
+
+    fn layouts(app: &mut App, frames: usize) -> usize {
+        (0..frames).filter(|_| frame(app, Duration::MAX, 3)).count()
+    }
+
+    #[test]
+    fn panels_are_laid_out_ten_times_a_second_and_painted_in_every_frame() {
+        let mut app = app();
+        assert!(frame(&mut app, Duration::MAX, 3));
+        let mut count = 0;
+        for _ in 0..200 {
+            count += usize::from(frame(&mut app, Duration::MAX, 3));
+            assert_eq!(painted(&mut app), 3);
+        }
+        assert_eq!(count, 20);
+    }
+
+    #[test]
+    fn input_and_what_egui_asks_for_and_a_changed_workbench_are_not_waited_for() {
+        let mut app = app();
+        layouts(&mut app, 5);
+        assert!(!frame(&mut app, Duration::MAX, 3));
+        let world = app.world_mut();
+        let mut inputs = world.query::<&mut EguiInput>();
+        inputs.single_mut(world).expect("a camera").events.push(Event::PointerMoved(Pos2::ZERO));
+        // Asks at once, and then after 30 ms.
+        assert!(frame(&mut app, Duration::ZERO, 3) && frame(&mut app, 3 * FRAME, 3));
+        assert_eq!([(); 3].map(|()| frame(&mut app, Duration::MAX, 3)), [false, false, true]);
+        assert!(!frame(&mut app, Duration::MAX, 3));
+        app.world_mut().resource_mut::<Workbench>().panel = crate::editor::ui::Panel::Wind;
+        assert!(frame(&mut app, Duration::MAX, 3));
+    }
+
+    #[test]
+    fn closed_panels_are_laid_out_for_input_alone() {
+        let mut app = app();
+        layouts(&mut app, 5);
+        app.world_mut().resource_mut::<Workbench>().is_open = false;
+        // Now they are gone.
+        assert!(frame(&mut app, Duration::MAX, 0));
+        assert_eq!((layouts(&mut app, 100), painted(&mut app)), (0, 0));
+        let world = app.world_mut();
+        let mut inputs = world.query::<&mut EguiInput>();
+        inputs.single_mut(world).expect("a camera").events.push(Event::PointerGone);
+        assert_eq!(layouts(&mut app, 10), 1);
+    }
+}
