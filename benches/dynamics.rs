@@ -8,8 +8,8 @@ use bevy::math::{Mat3, Vec2, Vec3};
 use bevy_windwood::{
     dynamics::{
         BeamDynamics, BeamPose, BeamSway, BeamWind, ExactStep, FrequencyClasses, LoadBasis, LoadBasisKind, MeanWind,
-        NO_PARENT, OscillatorGrid, OscillatorState, ResponseTable, StandWind, TIP_ANGLE_LIMIT, TablePlace, TreeInWind,
-        TreePoser,
+        NO_PARENT, OscillatorGrid, OscillatorState, ResponseTable, SecondMode, StandWind, TIP_ANGLE_LIMIT, TablePlace,
+        TreeInWind, TreePoser,
     },
     wind::{LogProfile, cross_flow_pressure},
 };
@@ -219,5 +219,13 @@ fn tree() -> Vec<BeamDynamics> {
 }
 
 fn sway(gain: f32, class: f32) -> BeamSway {
-    BeamSway { gain, class, averaging_speed_m_s: 1.0, drag_damping_s_m: 0.01, load_height_m: 8.0, drag_exponent: -0.35 }
+    BeamSway {
+        gain,
+        class,
+        averaging_speed_m_s: 1.0,
+        drag_damping_s_m: 0.01,
+        load_height_m: 8.0,
+        drag_exponent: -0.35,
+        second: SecondMode::default(),
+    }
 }

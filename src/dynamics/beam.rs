@@ -2,7 +2,8 @@
 
 use super::{
     mean_wind::MeanWind,
-    oscillator_grid::{OscillatorGrid, RowWeights},
+    oscillator_grid::{GridMode, OscillatorGrid, RowWeights},
+    second_mode::SecondMode,
     stand_wind::{StandLoads, StandWind},
 };
 use bevy::math::{FloatExt, Vec3};
@@ -63,6 +64,10 @@ impl BeamDynamics {
             drag_damping_s_m: mix(|sway| sway.drag_damping_s_m),
             load_height_m: mix(|sway| sway.load_height_m),
             drag_exponent: mix(|sway| sway.drag_exponent),
+            second: SecondMode {
+                class_offset: mix(|sway| sway.second.class_offset),
+                share: mix(|sway| sway.second.share),
+            },
         }
     }
 }
@@ -73,7 +78,8 @@ pub struct BeamSway {
     /// Tip deflection by length and by the wind's pressure `|u| u` at the load's height, in s^2/m^2, in a wind of
     /// [`DRAG_SPEED_M_S`].
     pub gain: f32,
-    /// Natural frequency as a [coordinate](super::FrequencyClasses::coordinate) of the classes, not rounded.
+    /// Natural frequency as a [coordinate](super::FrequencyClasses::coordinate) of the classes, not rounded. Of two that by which
+    /// gusts move it further.
     pub class: f32,
     /// Natural frequency times the size of what bends the beam ([`equivalent_size_m`](super::equivalent_size_m)), in m/s:
     /// the slower the wind beside it, the less of its gusts is felt.
@@ -84,6 +90,8 @@ pub struct BeamSway {
     pub load_height_m: f32,
     /// `V`: the load grows with the speed to the power `2 + V` (Vogel 1989). -1 to 0.
     pub drag_exponent: f32,
+    /// Its second natural frequency. Most beams have none.
+    pub second: SecondMode,
 }
 
 /// A wind and its table, as beams feel them.
@@ -114,7 +122,8 @@ struct LocalWind {
     folded: f32,
     /// Derivative of the load, which grows as `U^(2 + V)`, by that of `U^2`.
     gusts: f32,
-    damping_ratio: f32,
+    /// Damping ratio by drag.
+    drag_damping: f32,
 }
 
 impl BeamSway {
@@ -126,22 +135,50 @@ impl BeamSway {
     /// Between other trees both are less: [`StandWind`].
     #[must_use]
     pub fn answer(&self, wind: &BeamWind, scale: f32) -> BeamAnswer {
-        let LocalWind { loads, folded, gusts, damping_ratio } = self.local_wind(wind, scale);
-        let class = self.class + wind.grid.classes.shift(scale);
-        // The grid's sizes are for the table's wind.
-        let averaging_speed_m_s = self.averaging_speed_m_s / loads.convection;
+        let LocalWind { loads, folded, gusts, drag_damping } = self.local_wind(wind, scale);
+        let grid = &wind.grid;
+        let shift = grid.classes.shift(scale);
+        let [first, second] = self.modes(grid, drag_damping).map(|mode| GridMode {
+            class: mode.class + shift,
+            // The grid's sizes are for the table's wind.
+            averaging_speed_m_s: mode.averaging_speed_m_s / loads.convection,
+            ..mode
+        });
+        let read = if self.second.is_there() {
+            grid.weights_of_two([first, second], self.second.share)
+        } else {
+            grid.weights(first.class, first.averaging_speed_m_s, first.damping_ratio)
+        };
         let finite = |gain: f32| if gain.is_finite() { gain } else { 0.0 };
         BeamAnswer {
             mean_gain: finite(self.gain * folded * loads.mean),
             gust_gain: finite(self.gain * gusts * loads.gusts),
-            read: wind.grid.weights(class, averaging_speed_m_s, damping_ratio),
+            read,
         }
     }
 
-    /// Damping ratio of an instance of some scale in a wind: that of the wood and the roots, and what drag adds.
+    /// Damping ratio of the first mode of an instance of some scale in a wind: that of the wood and the roots, and what drag adds.
     #[must_use]
     pub fn damping_ratio(&self, wind: &BeamWind, scale: f32) -> f32 {
-        self.local_wind(wind, scale).damping_ratio
+        self.damping_ratios(wind, scale)[0]
+    }
+
+    /// The same of both modes.
+    #[must_use]
+    pub fn damping_ratios(&self, wind: &BeamWind, scale: f32) -> [f32; 2] {
+        self.modes(&wind.grid, self.local_wind(wind, scale).drag_damping).map(|mode| mode.damping_ratio)
+    }
+
+    /// Both modes, the first with that damping ratio by drag. What bends the beam, and so its size, is the same for both. Drag takes as much
+    /// of a motion in each second, the ratio of drag to mass: of a slower mode it is more by the period.
+    fn modes(&self, grid: &OscillatorGrid, drag_damping: f32) -> [GridMode; 2] {
+        let structure = grid.damping_ratios[0];
+        let faster = grid.classes.ratio.powf(self.second.class_offset);
+        [(0.0, 1.0), (self.second.class_offset, faster)].map(|(offset, faster)| GridMode {
+            class: self.class + offset,
+            averaging_speed_m_s: self.averaging_speed_m_s * faster,
+            damping_ratio: structure + drag_damping / faster,
+        })
     }
 
     fn local_wind(&self, wind: &BeamWind, scale: f32) -> LocalWind {
@@ -149,8 +186,21 @@ impl BeamSway {
         let speed_m_s = loads.mean.sqrt() * wind.stand.table_speed_m_s();
         let folded = drag_share(speed_m_s, self.drag_exponent);
         let gusts = (1.0 + 0.5 * self.drag_exponent) * folded;
-        let damping_ratio = wind.grid.damping_ratios[0] + gusts * speed_m_s * self.drag_damping_s_m;
-        LocalWind { loads, folded, gusts, damping_ratio }
+        LocalWind { loads, folded, gusts, drag_damping: gusts * speed_m_s * self.drag_damping_s_m }
+    }
+
+    /// The same beam with its second mode as the first. `ratio` is that of neighbouring classes.
+    #[must_use]
+    pub(crate) fn in_other_order(&self, ratio: f32) -> Self {
+        let SecondMode { class_offset, share } = self.second;
+        let faster = ratio.powf(class_offset);
+        Self {
+            class: self.class + class_offset,
+            averaging_speed_m_s: self.averaging_speed_m_s * faster,
+            drag_damping_s_m: self.drag_damping_s_m / faster,
+            second: SecondMode::rounded(-class_offset, 1.0 - share),
+            ..*self
+        }
     }
 
     /// Tip deflection by length in a steady wind over open country, by its pressure `|u| u` at 10 m, s^2/m^2: for pictures
@@ -232,6 +282,8 @@ mod tests {
                 BeamSway { drag_damping_s_m: value, ..OAK },
                 BeamSway { load_height_m: value, ..OAK },
                 BeamSway { drag_exponent: value, ..OAK },
+                BeamSway { second: SecondMode { class_offset: value, share: 0.5 }, ..OAK },
+                BeamSway { second: SecondMode { class_offset: 3.0, share: value }, ..OAK },
             ] {
                 for scale in [f32::NAN, 0.0, 1.0] {
                     let answer = sway.answer(&wind(8.0), scale);

@@ -42,6 +42,7 @@ pub(crate) mod oscillator_grid;
 mod periodic_filter;
 pub(crate) mod pose;
 pub(crate) mod response;
+pub(crate) mod second_mode;
 pub(crate) mod stand_wind;
 pub(crate) mod table_place;
 #[cfg(test)]
@@ -61,5 +62,6 @@ pub use mean_wind::MeanWind;
 pub use oscillator_grid::{OscillatorGrid, RowWeights};
 pub use pose::{TIP_ANGLE_LIMIT, TreeInWind, TreePoser};
 pub use response::ResponseTable;
+pub use second_mode::SecondMode;
 pub use stand_wind::{Speeds, StandWind};
 pub use table_place::TablePlace;

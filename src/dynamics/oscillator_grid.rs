@@ -14,7 +14,8 @@
 //! broad-band noise, `<R_i R_j> = 2 / (xi_i + xi_j)` up to a common factor, so `d` solves a quadratic equation.
 //!
 //! Both weights change with the wind and the season, not with time. A frequency between two classes is not mixed: weakly
-//! damped oscillators of neighbouring frequencies beat against each other.
+//! damped oscillators of neighbouring frequencies beat against each other. Beams of two frequencies read two rows for each
+//! (`two_modes.rs`).
 //!
 //! # Fast beams
 //!
@@ -72,10 +73,18 @@ pub struct OscillatorGrid {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RowWeights {
     /// Rows: of two sizes and for each of the two damping ratios; for a fast beam of two sizes in the low band, then of the two damping
-    /// ratios in the high one.
+    /// ratios in the high one. For a beam of two modes two rows of each: of both damping ratios, or, where it is fast, of each band.
     pub rows: [u32; 4],
-    /// Weights of these rows. They add up to 1; for a fast beam those of the low band do, and those of the high band to `|J|`.
+    /// Weights of these rows. Without those of the high band they add up to 1; for a fast beam those of the high band to `|J|`.
     pub weights: [f32; 4],
+}
+
+/// A mode of a beam, as [`OscillatorGrid::weights`] has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct GridMode {
+    pub class: f32,
+    pub averaging_speed_m_s: f32,
+    pub damping_ratio: f32,
 }
 
 /// Number of rows of a grid of these classes.
@@ -126,9 +135,7 @@ impl OscillatorGrid {
     pub fn weights(&self, class: f32, averaging_speed_m_s: f32, damping_ratio: f32) -> RowWeights {
         let nearest = self.classes.nearest(class);
         let first_fast = self.classes.first_fast();
-        // The row's own frequency is not quite the beam's. All fast beams share the sizes of the first fast class.
-        let rounding = (nearest.min(first_fast) as f32 - class) * self.classes.ratio.ln();
-        let (first, larger) = self.size_mix(averaging_speed_m_s, rounding);
+        let (first, larger) = self.size_mix(averaging_speed_m_s, self.rounding(class));
         let damped = self.damped_share(damping_ratio);
         if nearest < first_fast {
             let row = |size, damping| self.row(nearest, first + size, damping) as u32;
@@ -151,6 +158,11 @@ impl OscillatorGrid {
         }
     }
 
+    /// The row's own frequency is not quite the beam's: the logarithm of their ratio. All fast beams share the sizes of the first fast class.
+    fn rounding(&self, class: f32) -> f32 {
+        (self.classes.nearest(class).min(self.classes.first_fast()) as f32 - class) * self.classes.ratio.ln()
+    }
+
     /// The smaller of the two sizes about a beam's own, and the weight of the larger. `rounding` is what is added to the logarithm
     /// of its reduced size.
     fn size_mix(&self, averaging_speed_m_s: f32, rounding: f32) -> (usize, f32) {
@@ -162,7 +174,10 @@ impl OscillatorGrid {
 
     /// `|J|` of a beam at its natural frequency, mixed as sizes are.
     fn natural_admittance(&self, averaging_speed_m_s: f32) -> f32 {
-        let (first, larger) = self.size_mix(averaging_speed_m_s, 0.0);
+        self.admittance_of(self.size_mix(averaging_speed_m_s, 0.0))
+    }
+
+    fn admittance_of(&self, (first, larger): (usize, f32)) -> f32 {
         self.natural_admittances[first] * (1.0 - larger) + self.natural_admittances[first + 1] * larger
     }
 
@@ -249,3 +264,4 @@ fn thinned(needed: f64, available: usize) -> usize {
 
 #[cfg(test)]
 mod tests;
+mod two_modes;

@@ -5,6 +5,7 @@ use super::{
     frequency_classes::FrequencyClasses,
     mean_wind::MeanWind,
     oscillator_grid::OscillatorGrid,
+    second_mode::SecondMode,
     stand_wind::StandWind,
 };
 use crate::wind::LogProfile;
@@ -18,6 +19,7 @@ pub(crate) const OAK: BeamSway = BeamSway {
     drag_damping_s_m: 5e-3,
     load_height_m: 10.0,
     drag_exponent: -0.35,
+    second: SecondMode { class_offset: 0.0, share: 0.0 },
 };
 
 /// A wind over open country of that speed at 10 m.

@@ -25,6 +25,18 @@ pub struct LiveBeam {
     pub class: usize,
     /// Share of the more strongly damped oscillator.
     pub(super) damped: f32,
+    /// Its second frequency.
+    pub(super) second: LiveSecond,
+}
+
+/// The second frequency of a beam: class and share of the more strongly damped oscillator, and its share of the motion, 0 where the beam has
+/// none. Oscillators have the damping ratio of each mode: unlike that of the table's rows
+/// ([`oscillator_grid`](crate::dynamics::oscillator_grid)) it has not to make up for a size.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct LiveSecond {
+    pub class: usize,
+    pub damped: f32,
+    pub share: f32,
 }
 
 /// Place on its axis where a beam is loaded, unless its height tells otherwise.
@@ -38,6 +50,8 @@ impl LiveBeam {
         let finite = |value: f32| if value.is_finite() { value } else { 0.0 };
         let own_hz = grid.classes.lowest_hz * grid.classes.ratio.powf(sway.class);
         let oscillating = grid.classes.quasi_static().max(1) - 1;
+        let class_of = |coordinate: f32| grid.classes.nearest(coordinate + grid.classes.shift(scale)).min(oscillating);
+        let [damped, second_damped] = sway.damping_ratios(wind, scale).map(|ratio| grid.damped_share(ratio));
         let along = beam.base + beam.direction * (LOADED_AT * beam.length_m);
         Self {
             load_at: along.with_y(finite(sway.load_height_m)),
@@ -46,8 +60,13 @@ impl LiveBeam {
             stiff_axis: beam.stiff_axis,
             gain: finite(SLOPE_TIP * sway.gain),
             drag_exponent: finite(sway.drag_exponent).clamp(-1.0, 0.0),
-            class: grid.classes.nearest(sway.class + grid.classes.shift(scale)).min(oscillating),
-            damped: grid.damped_share(sway.damping_ratio(wind, scale)),
+            class: class_of(sway.class),
+            damped,
+            second: LiveSecond {
+                class: class_of(sway.class + sway.second.class_offset),
+                damped: second_damped,
+                share: if sway.second.is_there() { sway.second.share.min(1.0) } else { 0.0 },
+            },
         }
     }
 
@@ -74,6 +93,7 @@ mod tests {
     use super::*;
     use crate::dynamics::{
         beam::BeamSway,
+        second_mode::SecondMode,
         test_beams::{OAK, upright, wind},
     };
 
@@ -112,9 +132,11 @@ mod tests {
                 BeamSway { averaging_speed_m_s: odd, ..OAK },
                 BeamSway { load_height_m: odd, ..OAK },
                 BeamSway { drag_exponent: odd, ..OAK },
+                BeamSway { second: SecondMode { class_offset: odd, share: odd }, ..OAK },
             ] {
                 let live = LiveBeam::new(&upright(sway, LENGTH_M), &wind(6.0), odd, odd);
                 assert!(live.load_at.is_finite() && live.spread_m >= 0.0 && live.damped.is_finite(), "{live:?}");
+                assert!(live.second.damped.is_finite() && (0.0..=1.0).contains(&live.second.share), "{live:?}");
                 assert!(live.load(Vec3::X, Vec3::splat(odd)).is_finite());
             }
         }

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! the integral of the moment over the compliance, which is taken as even. Beams answer a blow as they answer the wind: each as an
-//! oscillator of its own frequency, of which that is the static angle.
+//! oscillator of its own frequency, or as two, of which that is the static angle.
 //!
 //! A body that is pushed into a tree moves the branches that it meets just so far that they lie beside it, by the shares with which a force
 //! there bends them. That is no force but a constraint, so it holds at any time step. It moves no beam farther

@@ -1,6 +1,6 @@
 //! The state of a tree that is touched, and how it goes on.
 
-use super::beam::LiveBeam;
+use super::beam::{LiveBeam, LiveSecond};
 use crate::dynamics::{
     exact_step::{ExactStep, OscillatorState},
     oscillator_grid::{DAMPINGS, OscillatorGrid},
@@ -77,23 +77,56 @@ impl BeamLoad {
 #[derive(Clone, Debug, Default)]
 pub struct LiveTree {
     beams: Vec<LiveState>,
+    /// The second mode of each beam. Apart, since most beams have none: those are not looked at.
+    seconds: Vec<LiveMode>,
     /// What one body has bent so far, kept for the next.
     pub(super) bent: Vec<Vec3A>,
 }
 
+/// A beam: its first mode, as if that were all of its motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct LiveState {
-    oscillators: [OscillatorState<Vec3A>; DAMPINGS],
+    first: LiveMode,
     /// At the end of the last step.
     load: Vec3A,
+    /// Of the motion, of the second mode.
+    second_share: f32,
+}
+
+/// A natural frequency of a beam. The angles are those of all of its load.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct LiveMode {
+    oscillators: [OscillatorState<Vec3A>; DAMPINGS],
     damped: f32,
     omega: f32,
 }
 
 impl LiveState {
-    fn mixed(&self, of: impl Fn(&OscillatorState<Vec3A>) -> Vec3A) -> Vec3A {
-        let [low, high] = self.oscillators.each_ref().map(of);
+    /// The angle of a beam, with that of its second mode.
+    fn angle(&self, second: &LiveMode) -> Vec3A {
+        let first = self.first.angle();
+        if self.second_share > 0.0 { first.lerp(second.angle(), self.second_share) } else { first }
+    }
+
+    /// Both modes; of a beam with one alone that.
+    fn modes<'a>(&'a mut self, second: &'a mut LiveMode) -> impl Iterator<Item = &'a mut LiveMode> {
+        let has_second = self.second_share > 0.0;
+        std::iter::once(&mut self.first).chain(has_second.then_some(second))
+    }
+}
+
+impl LiveMode {
+    fn angle(&self) -> Vec3A {
+        let [low, high] = self.oscillators.each_ref().map(|it| it.displacement);
         low * (1.0 - self.damped) + high * self.damped
+    }
+
+    /// Carries it over a step, for the loads at its beginning and at its end.
+    fn step(&mut self, steps: &LiveSteps, class: usize, loads: [Vec3A; 2]) {
+        let Some((steps, omega)) = steps.steps.get(class).zip(steps.omegas.get(class)) else { return };
+        let [before, after] = loads.map(|load| load * (omega * omega));
+        self.oscillators = std::array::from_fn(|d| steps[d].advance(self.oscillators[d], before, after));
+        *self = self.bounded();
     }
 
     /// Its greatest free angle, were it left alone, rad.
@@ -126,34 +159,44 @@ impl LiveTree {
     pub fn prepare(&mut self, beams: &[LiveBeam], grid: &OscillatorGrid) {
         let omegas: Vec<f32> = omegas(grid).collect();
         self.beams.resize(beams.len(), LiveState::default());
-        for (state, beam) in self.beams.iter_mut().zip(beams) {
-            (state.damped, state.omega) = (beam.damped, omegas[beam.class.min(omegas.len() - 1)]);
+        self.seconds.resize(beams.len(), LiveMode::default());
+        let omega = |class: usize| omegas[class.min(omegas.len() - 1)];
+        for ((state, second), beam) in self.beams.iter_mut().zip(&mut self.seconds).zip(beams) {
+            let LiveSecond { class, damped, share } = beam.second;
+            (state.first.damped, state.first.omega) = (beam.damped, omega(beam.class));
+            (second.damped, second.omega) = (damped, omega(class));
+            // One that comes with a season begins as the first moves; one that has gone does not come back as it was.
+            if state.second_share == 0.0 || share == 0.0 {
+                second.oscillators = state.first.oscillators;
+            }
+            state.second_share = share;
         }
     }
 
     /// Carries it over one step. `load` says what bends each beam, by its number.
     pub fn step(&mut self, beams: &[LiveBeam], steps: &LiveSteps, mut load: impl FnMut(usize, &LiveBeam) -> BeamLoad) {
-        for (index, (state, beam)) in self.beams.iter_mut().zip(beams).enumerate() {
-            let Some((steps, omega)) = steps.steps.get(beam.class).zip(steps.omegas.get(beam.class)) else { continue };
+        let states = self.beams.iter_mut().zip(&mut self.seconds).zip(beams);
+        for (index, ((state, second), beam)) in states.enumerate() {
             let BeamLoad { steady, pulse } = load(index, beam);
             let steady = steady.unwrap_or(state.load);
-            let square = omega * omega;
-            let [before, after] = [state.load + pulse, steady + pulse].map(|load| load * square);
-            state.oscillators = std::array::from_fn(|d| steps[d].advance(state.oscillators[d], before, after));
+            let loads = [state.load + pulse, steady + pulse];
+            state.first.step(steps, beam.class, loads);
+            if state.second_share > 0.0 {
+                second.step(steps, beam.second.class, loads);
+            }
             state.load = steady;
-            *state = state.bounded();
         }
     }
 
     /// What is added to the free angle of a beam, rad.
     #[must_use]
     pub fn angle(&self, beam: usize) -> Vec3A {
-        self.beams.get(beam).map_or(Vec3A::ZERO, |state| state.mixed(|it| it.displacement))
+        self.beams.get(beam).zip(self.seconds.get(beam)).map_or(Vec3A::ZERO, |(state, second)| state.angle(second))
     }
 
     /// The same for all beams.
     pub fn angles(&self) -> impl Iterator<Item = Vec3A> {
-        self.beams.iter().map(|state| state.mixed(|it| it.displacement))
+        self.beams.iter().zip(&self.seconds).map(|(state, second)| state.angle(second))
     }
 
     /// Number of beams.
@@ -171,28 +214,37 @@ impl LiveTree {
     /// Whether no beam is, or comes, farther than a small angle, rad, by a load or by itself.
     #[must_use]
     pub fn is_still(&self, angle_rad: f32) -> bool {
-        self.beams.iter().all(|state| state.load.length() < angle_rad && state.amplitude() < angle_rad)
+        self.beams.iter().zip(&self.seconds).all(|(state, second)| {
+            let is_still = state.load.length() < angle_rad && state.first.amplitude() < angle_rad;
+            is_still && (state.second_share == 0.0 || second.amplitude() < angle_rad)
+        })
     }
 
     /// Strikes a beam: `static_rad_s` is the static free angle under a force, times the time for which that acts, rad s.
     pub(super) fn strike(&mut self, beam: usize, static_rad_s: Vec3A) {
-        let Some(state) = self.beams.get_mut(beam) else { return };
-        state.oscillators.iter_mut().for_each(|it| it.velocity += static_rad_s * (state.omega * state.omega));
-        *state = state.bounded();
+        let Some((state, second)) = self.beams.get_mut(beam).zip(self.seconds.get_mut(beam)) else { return };
+        for mode in state.modes(second) {
+            mode.oscillators.iter_mut().for_each(|it| it.velocity += static_rad_s * (mode.omega * mode.omega));
+            *mode = mode.bounded();
+        }
     }
 
     /// Bends a beam further by an angle, but along that one not beyond `most_rad` in all, and takes away its motion against it. Returns by
     /// how much it was bent, rad.
     pub(super) fn push(&mut self, beam: usize, angle: Vec3A, most_rad: f32) -> Vec3A {
-        let Some(state) = self.beams.get_mut(beam) else { return Vec3A::ZERO };
+        let Some((state, second)) = self.beams.get_mut(beam).zip(self.seconds.get_mut(beam)) else {
+            return Vec3A::ZERO;
+        };
         let along = angle.normalize_or_zero();
-        let now_rad = state.mixed(|it| it.displacement).dot(along);
+        let now_rad = state.angle(second).dot(along);
         let pushed = along * (angle.length().min((most_rad - now_rad).max(0.0)));
-        for it in &mut state.oscillators {
-            it.displacement += pushed;
-            it.velocity -= along * it.velocity.dot(along).min(0.0);
+        for mode in state.modes(second) {
+            for it in &mut mode.oscillators {
+                it.displacement += pushed;
+                it.velocity -= along * it.velocity.dot(along).min(0.0);
+            }
+            *mode = mode.bounded();
         }
-        *state = state.bounded();
         pushed
     }
 }

@@ -64,6 +64,72 @@ fn variances(class: usize, size_m: f64, damping: f64) -> [f64; 2] {
     [power(&|bin| mixed[bin]), power(&exact)]
 }
 
+/// The same of a beam of two modes of these classes, of which the second has that share.
+fn variances_of_two(classes: [usize; 2], share: f64, size_m: f64, damping: f64) -> [f64; 2] {
+    const BINS: usize = 1500;
+    let grid = grid();
+    let naturals_hz = classes.map(|class| grid.class_hz(class));
+    let mode = |which: usize| GridMode {
+        class: classes[which] as f32,
+        averaging_speed_m_s: (naturals_hz[which] * size_m) as f32,
+        damping_ratio: damping as f32,
+    };
+    let read = grid.weights_of_two([mode(0), mode(1)], share as f32);
+    let bin_hz = naturals_hz[1] / 500.0;
+    let rows = read.rows.map(|row| of_row(&grid, row, bin_hz, BINS));
+    let mut powers = [0.0; 2];
+    for bin in 1..BINS {
+        let hz = bin as f64 * bin_hz;
+        let mixed: Complex<f64> = rows.iter().zip(read.weights).map(|(row, weight)| row[bin] * f64::from(weight)).sum();
+        let [first, second] = naturals_hz.map(|natural_hz| exact(hz, natural_hz, size_m, damping));
+        let both = first * (1.0 - share) + second * share;
+        powers[0] += gusts(hz) * mixed.norm_sqr();
+        powers[1] += gusts(hz) * both.norm_sqr();
+    }
+    powers
+}
+
+/// Each with two rows, of one size and one damping ratio or two.
+#[test]
+fn beams_of_two_modes_sway_about_as_far_as_both_oscillators() {
+    let (mut worst, mut square, mut count) = (0.0_f64, 0.0, 0.0);
+    for classes in [[6, 10], [10, 13], [10, 16], [14, 20], [18, 21], [17, 24], [23, 26]] {
+        for share in [0.3, 0.5, 0.6] {
+            for reduced_size in [0.006, 0.015, 0.04, 0.07, 0.1, 0.2] {
+                for damping in [0.05, 0.08, 0.12, 0.2, 0.3] {
+                    let size_m = reduced_size * SPEED_M_S / grid().class_hz(classes[0]);
+                    let [mixed, exact] = variances_of_two(classes, share, size_m, damping);
+                    let error = (mixed / exact).sqrt() - 1.0;
+                    (worst, square, count) = (worst.max(error.abs()), square + error * error, count + 1.0);
+                    assert!(error.abs() < 0.15, "{classes:?}, {share}, {reduced_size}, {damping}: {error}");
+                }
+            }
+        }
+    }
+    println!("rms error of two modes {}, worst {worst}", (square / count).sqrt());
+}
+
+#[test]
+fn two_modes_read_finite_weights_of_rows_that_there_are() {
+    let grid = grid();
+    for class in [f32::NAN, -5.0, 3.3, 21.4, 25.0, 40.0, f32::INFINITY] {
+        for averaging_speed_m_s in [f32::NAN, -1.0, 0.0, 0.5, 30.0, f32::INFINITY] {
+            for damping_ratio in [f32::NAN, -1.0, 0.0, 0.1, 5.0, f32::INFINITY] {
+                let modes = [class, 11.0].map(|class| GridMode { class, averaging_speed_m_s, damping_ratio });
+                for share in [0.0, 0.4, 1.0, f32::INFINITY] {
+                    let RowWeights { rows, weights } = grid.weights_of_two(modes, share);
+                    let told = format!("{modes:?} {share}");
+                    assert!(weights.iter().all(|weight| *weight >= 0.0 && *weight <= 1.0), "{told}: {weights:?}");
+                    assert!(rows.iter().all(|row| (*row as usize) < grid.rows()), "{told}");
+                    let low = |(row, _): &(&u32, f32)| (**row as usize) < grid.low_row(SIZES);
+                    let sum: f32 = rows.iter().zip(weights).filter(low).map(|(_, weight)| weight).sum();
+                    assert!((sum - 1.0).abs() < 1e-5, "{told}: {sum}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn mixes_sway_as_far_as_beams_of_any_size_and_damping() {
     let mut worst = 0.0_f64;

@@ -6,6 +6,7 @@ use super::super::{
     mean_wind::MeanWind,
     oracle::cantilever::CantileverMode,
     oscillator_grid::OscillatorGrid,
+    second_mode::SecondMode,
     stand_wind::StandWind,
 };
 use super::{beam_group::held_to_wind, *};
@@ -13,7 +14,15 @@ use bevy::math::{DVec3, Quat};
 
 /// A sway that feels the table's wind as it is.
 const fn sway(gain: f32, class: f32) -> BeamSway {
-    BeamSway { gain, class, averaging_speed_m_s: 0.0, drag_damping_s_m: 0.0, load_height_m: 10.0, drag_exponent: 0.0 }
+    BeamSway {
+        gain,
+        class,
+        averaging_speed_m_s: 0.0,
+        drag_damping_s_m: 0.0,
+        load_height_m: 10.0,
+        drag_exponent: 0.0,
+        second: SecondMode { class_offset: 0.0, share: 0.0 },
+    }
 }
 
 fn wind() -> BeamWind {

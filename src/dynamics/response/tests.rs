@@ -1,8 +1,19 @@
 use super::super::{
-    admittance::admittance, frequency_classes::FrequencyClasses, load_basis::LoadBasisKind,
+    admittance::admittance,
+    beam::{BeamSway, BeamWind},
+    beam_pose::BeamPose,
+    bend::SLOPE_TIP,
+    frequency_classes::FrequencyClasses,
+    load_basis::LoadBasisKind,
+    mean_wind::MeanWind,
     oracle::oscillator::Oscillator,
+    pose::{TreeInWind, TreePoser},
+    second_mode::SecondMode,
+    stand_wind::StandWind,
+    test_beams::upright,
 };
 use super::*;
+use bevy::math::Mat3;
 use std::f64::consts::TAU;
 
 fn grid() -> OscillatorGrid {
@@ -90,6 +101,47 @@ fn rows_match_the_periodic_response_of_the_oracle() {
             }
         }
     }
+}
+
+/// A beam of two modes, posed, against both oscillators under the load that bends it.
+#[test]
+fn a_beam_of_two_modes_moves_as_the_sum_of_both_oscillators() {
+    let columns = [column(0.0)];
+    let (basis, table) = table(&columns);
+    let second = SecondMode { class_offset: 5.0, share: 0.4 };
+    let sway = BeamSway { gain: 1e-5, class: 9.0, load_height_m: 10.0, second, ..BeamSway::default() };
+    let wind = BeamWind { stand: StandWind::open(MeanWind::open_country(6.0)), grid: table.grid };
+    let tree = TreeInWind { map: basis.map(), wind, to_wind: Mat3::IDENTITY, scale: 1.0, leaf_share: 1.0 };
+    let poser = TreePoser::new(&[upright(sway, 4.0)], &tree);
+
+    let modes = [(9, 0.6), (14, 0.4)].map(|(class, share)| {
+        let frequency_hz = f64::from(table.grid.classes.frequency_hz(class));
+        let omega = TAU * frequency_hz;
+        let oscillator = Oscillator::new(omega, f64::from(table.grid.damping_ratios[0]));
+        let last = table.rows[table.grid.row(class, 0, 0)].samples / 2 - 1;
+        let of_signal = |k: usize| {
+            let signal: Vec<f64> = columns[0].iter().map(|&v| f64::from(basis.signals(v)[k])).collect();
+            let load: Vec<f64> =
+                felt(&signal, 0.006 * 6.0 / frequency_hz, last).iter().map(|q| q * omega * omega).collect();
+            oscillator.periodic_response(&load, 1.0 / 16.0)
+        };
+        (share, [0, 1, 2, 3].map(of_signal))
+    });
+    let load = basis.map().coefficients(Vec3::Y);
+    let answer = sway.answer(&wind, 1.0);
+    let (mut responses, mut poses) = (Vec::new(), [BeamPose::REST]);
+    let (mut error, mut size) = (0.0, 0.0);
+    // Samples that the rows of both have.
+    for time in (0..table.samples).step_by(4) {
+        table.responses(&on(0, time as f64 / 16.0), poser.rows(), &mut responses);
+        poser.pose(&responses, Vec3::ZERO, &mut poses);
+        let moving = (0..4).map(|k| load.moving[k] * modes.iter().map(|(s, of)| s * of[k][time]).sum::<f64>() as f32);
+        let moving = moving.sum::<Vec3>() * (SLOPE_TIP * answer.gust_gain);
+        let expected = load.mean * (SLOPE_TIP * answer.mean_gain) + moving;
+        error += Vec3::from(poses[0].tip_angle).distance_squared(expected);
+        size += moving.length_squared();
+    }
+    assert!((error / size).sqrt() < 2e-3, "{}", (error / size).sqrt());
 }
 
 /// The gusts of [`column`] are slow: the smallest body feels nearly all of them, without inertia.

@@ -88,13 +88,14 @@ struct AtlasUniform {
 struct StemUniform {
     in_leaf: Vec4,
     bare: Vec4,
-    loads: Vec4,
+    loads: UVec4,
     leaf_season: UVec4,
 }
 
 impl From<&ImpostorSway> for StemUniform {
     fn from(sway: &ImpostorSway) -> Self {
-        let [in_leaf, bare, loads] = sway_vectors(&sway.in_leaf, &sway.bare).map(Vec4::from_array);
+        let (sways, loads) = sway_vectors(&sway.in_leaf, &sway.bare);
+        let ([in_leaf, bare], loads) = (sways.map(Vec4::from_array), UVec4::from_array(loads));
         Self { in_leaf, bare, loads, leaf_season: UVec4::new(sway.leaf_season.bits(), 0, 0, 0) }
     }
 }

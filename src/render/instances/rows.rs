@@ -1,7 +1,10 @@
 //! Rows of the GPU tables. `render/shaders/instances.wesl` has the same layouts.
 
 use crate::{
-    dynamics::beam::{BeamDynamics, BeamSway},
+    dynamics::{
+        beam::{BeamDynamics, BeamSway},
+        second_mode::SecondMode,
+    },
     tree::LeafSeason,
     wind::{Canopy, PackedCanopy},
 };
@@ -18,7 +21,7 @@ pub(crate) struct BeamRow {
     attach: f32,
     in_leaf: [f32; 4],
     bare: [f32; 4],
-    loads: [f32; 4],
+    loads: [u32; 4],
     parent: u32,
     leaf_season: u32,
     angle_limit_rad: f32,
@@ -29,7 +32,7 @@ pub(crate) struct BeamRow {
 impl BeamRow {
     /// A beam of a tree that has leaves in that season.
     pub fn new(beam: &BeamDynamics, leaf_season: LeafSeason) -> Self {
-        let [in_leaf, bare, loads] = sway_vectors(&beam.in_leaf, &beam.bare);
+        let ([in_leaf, bare], loads) = sway_vectors(&beam.in_leaf, &beam.bare);
         Self {
             base: beam.base.to_array(),
             length_m: beam.length_m,
@@ -64,11 +67,18 @@ fn across(direction: Vec3) -> [Vec3; 2] {
     [Vec3::new(1.0 + sign * x * x * a, sign * b, -sign * x), Vec3::new(b, sign + y * y * a, -y)]
 }
 
-/// `LeafySway` of the shader: a sway in leaf and bare.
-pub(crate) fn sway_vectors(in_leaf: &BeamSway, bare: &BeamSway) -> [[f32; 4]; 3] {
+/// `LeafySway` of the shader: a sway in leaf and bare, and what both have of the load and of a second frequency.
+pub(crate) fn sway_vectors(in_leaf: &BeamSway, bare: &BeamSway) -> ([[f32; 4]; 2], [u32; 4]) {
     let vector = |sway: &BeamSway| [sway.gain, sway.class, sway.averaging_speed_m_s, sway.drag_damping_s_m];
-    let loads = [in_leaf.load_height_m, in_leaf.drag_exponent, bare.load_height_m, bare.drag_exponent];
-    [vector(in_leaf), vector(bare), loads]
+    let both = [in_leaf, bare];
+    let [leafy_m, bare_m] = both.map(|sway| sway.load_height_m.to_bits());
+    // In steps of 3e-5.
+    let [a, b] = both.map(|sway| u32::from((sway.drag_exponent.clamp(-1.0, 1.0) * 32_767.0).round() as i16 as u16));
+    let [[c, d], [e, f]] = both.map(|sway| {
+        let of_most = sway.second.class_offset / SecondMode::MOST_OFFSET;
+        [of_most, sway.second.share].map(|value| (value.clamp(-1.0, 1.0) * 127.0).round() as i8 as u8)
+    });
+    ([vector(in_leaf), vector(bare)], [leafy_m, bare_m, a | b << 16, u32::from_le_bytes([c, d, e, f])])
 }
 
 /// `Frame` of the shader: the values of one frame.
@@ -243,6 +253,28 @@ mod tests {
             let packed = packed_stiff_axis(&BeamDynamics { direction, stiff_axis, ..upright(OAK, 1.0) });
             let [of_a, of_b] = [packed as u16, (packed >> 16) as u16].map(|bits| f32::from(bits as i16) / 32_767.0);
             assert!((a * of_a + b * of_b).distance(stiff_axis) < 5e-5, "{direction}");
+        }
+    }
+
+    /// As `second_mode` and `drag_exponent` of the shader unpack them.
+    #[test]
+    fn second_frequencies_are_packed_without_rounding() {
+        for (offset, share) in [(3.2, 0.41), (-15.9, 1.0), (7.999, 0.004), (f32::NAN, 0.5), (2.0, f32::NAN)] {
+            let [leafy, bare] = [SecondMode::rounded(offset, share), SecondMode::rounded(1.0, 0.25)];
+            let [in_leaf, bare] = [leafy, bare].map(|second| BeamSway { second, ..OAK });
+            let (_, [.., exponents, modes]) = sway_vectors(&in_leaf, &bare);
+            let unpacked = modes.to_le_bytes().map(|byte| f32::from(byte.cast_signed()) / 127.0);
+            for (sway, [of_most, share]) in
+                [in_leaf, bare].iter().zip([[unpacked[0], unpacked[1]], [unpacked[2], unpacked[3]]])
+            {
+                assert!(
+                    (of_most * SecondMode::MOST_OFFSET - sway.second.class_offset).abs() < 1e-5,
+                    "{offset} {share}"
+                );
+                assert!((share - sway.second.share).abs() < 1e-6, "{offset} {share}");
+            }
+            let exponent = f32::from((exponents as u16).cast_signed()) / 32_767.0;
+            assert!((exponent - OAK.drag_exponent).abs() < 2e-5);
         }
     }
 

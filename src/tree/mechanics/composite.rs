@@ -1,7 +1,7 @@
 //! How fast a branch sways with all that it carries, and how drag damps it.
 //!
-//! The frequency is that of its resonance (`resonance.rs`), or, where that is too fast to be looked for and for branches that bear leaves
-//! alone, that of Rayleigh's method for rigid arms. For the damping its shape is that under the forces `m` along an axis across
+//! The frequency is that of its resonance (`resonance.rs`), where it may have two, or, where that is too fast to be looked for and for
+//! branches that bear leaves alone, that of Rayleigh's method for rigid arms. For the damping its shape is that under the forces `m` along an axis across
 //! the branch, which bend it and every branch that it carries. A piece moves by the sum over all branches between it and
 //! this one's root,
 //!
@@ -15,18 +15,20 @@
 use super::{
     branches::{LoadedBranch, LoadedTree},
     hinges::outer,
-    resonance::resonances_hz,
+    lag_curve::{Resonance, SecondResonance},
+    resonance::resonances,
     response::BranchResponse,
 };
 use bevy::math::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
-/// A branch's natural frequency, and what drag adds to its damping.
+/// A branch's natural frequencies, and what drag adds to its damping.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CompositeSway {
     pub frequency_hz: f64,
-    /// Damping ratio by drag for each m/s of wind, s/m.
+    /// Damping ratio by drag for each m/s of wind, s/m, at that frequency.
     pub drag_damping_s_m: f64,
+    pub second: Option<SecondResonance>,
 }
 
 /// Sums over the pieces of a branch, of `m |u|^2` and `c |u|^2`.
@@ -43,18 +45,22 @@ pub(super) fn composite_sways(
     responses: &[BranchResponse],
 ) -> Vec<CompositeSway> {
     let slots = slots(tree, branches, responses);
-    let frequencies_hz: Vec<f64> = resonances_hz(branches, responses)
+    let found: Vec<Resonance> = resonances(branches, responses)
         .into_iter()
         .zip(branches.iter().zip(responses))
-        .map(|(found_hz, (branch, response))| found_hz.unwrap_or_else(|| response.sway.rigid_hz(branch)))
+        .map(|(found, (branch, response))| {
+            found.unwrap_or_else(|| Resonance { frequency_hz: response.sway.rigid_hz(branch), second: None })
+        })
         .collect();
-    let bends = |branch: usize, carrier: usize| branch == carrier || frequencies_hz[branch] >= frequencies_hz[carrier];
+    let bends =
+        |branch: usize, carrier: usize| branch == carrier || found[branch].frequency_hz >= found[carrier].frequency_hz;
     let sums = sums(tree, branches, &slots, bends);
     sums.iter()
         .zip(responses)
-        .zip(&frequencies_hz)
-        .map(|((sums, response), &frequency_hz)| CompositeSway {
+        .zip(&found)
+        .map(|((sums, response), &Resonance { frequency_hz, second })| CompositeSway {
             frequency_hz,
+            second,
             drag_damping_s_m: sums.drag / (TAU * frequency_hz * (sums.inertia + 2.0 * response.sway.turning)),
         })
         .collect()

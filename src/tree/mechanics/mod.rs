@@ -8,12 +8,13 @@
 //!
 //! ```text
 //! gain of a beam  = turn of its tip under the drag for |u|u = 1 m^2/s^2, over phi_1'(1)             (statics.rs, response.rs)
-//! w of a branch   = where it resonates with all that it carries, which bends, twists and sways too        (resonance.rs)
+//! w of a branch   = where it resonates with all that it carries, which bends, twists and sways too        (resonance.rs, lag_curve.rs)
 //! damping by drag = U (1 + V/2) sum c |u|^2 / (w sum m |u|^2),   c |u| u = drag of a lump                (composite.rs)
 //! ```
 //!
 //! The third follows from drag by the velocity that a moving lump sees: `c (U - y')^(2 + V)` loses `(2 + V) c U y'`. All beams
-//! of a branch sway with its frequency. Without what it bears a trunk would sway much faster (80% of the crown must go
+//! of a branch sway with its frequency, or with two, each with its share of the deflection, where it has two peaks of about the same
+//! strength. Without what it bears a trunk would sway much faster (80% of the crown must go
 //! before it shows: Moore & Maguire 2004).
 //!
 //! Weight pulls over what leans, and holds what hangs: stems and twigs bend further by it, or less, and all branches sway slower, or faster.
@@ -30,6 +31,7 @@ mod branches;
 mod composite;
 mod four;
 mod hinges;
+mod lag_curve;
 mod resonance;
 mod response;
 mod skew;
@@ -53,6 +55,7 @@ use crate::dynamics::{
     beam::{BeamDynamics, BeamSway, NO_PARENT},
     frequency_classes::FrequencyClasses,
     pose::TIP_ANGLE_LIMIT,
+    second_mode::SecondMode,
 };
 use bevy::math::Vec3;
 
@@ -77,6 +80,7 @@ pub(super) fn beam_dynamics(species: &Species, skeleton: &Skeleton) -> Vec<BeamD
         let branches: Vec<LoadedBranch> = tree.branches.iter().map(LoadedBranch::without_leaves).collect();
         let bare = TreeResponse::new(&tree, &branches, skeleton);
         bare.write(&tree, exponents[1], |beam, sway| rows[beam].bare = sway);
+        rows.iter_mut().for_each(match_modes);
     } else {
         rows.iter_mut().for_each(|row| row.bare = row.in_leaf);
     }
@@ -126,11 +130,30 @@ fn share_angle_limit(branch: &LoadedBranch, rows: &mut [BeamDynamics]) {
     }
 }
 
+/// Makes the two modes of a beam in leaf and bare those that are mixed while leaves unfold and fall: the slower with the slower. Where it
+/// has one of both states alone, the other has it as far from its own, with no share of the motion.
+fn match_modes(beam: &mut BeamDynamics) {
+    let (in_leaf, bare) = (&mut beam.in_leaf, &mut beam.bare);
+    match [in_leaf.second.is_there(), bare.second.is_there()] {
+        [true, true] if in_leaf.second.class_offset * bare.second.class_offset < 0.0 => {
+            *bare = bare.in_other_order(FrequencyClasses::default().ratio);
+        }
+        [true, false] => bare.second.class_offset = in_leaf.second.class_offset,
+        [false, true] => in_leaf.second.class_offset = bare.second.class_offset,
+        _ => {}
+    }
+}
+
 fn beam_sway(load: &BeamLoad, sway: &CompositeSway, drag_exponent: f32) -> BeamSway {
     let finite = |value: f64| if value.is_finite() { value as f32 } else { 0.0 };
+    let class = |frequency_hz: f64| FrequencyClasses::default().coordinate(frequency_hz as f32);
+    let second = sway.second.map_or(SecondMode::default(), |second| {
+        SecondMode::rounded(class(second.frequency_hz) - class(sway.frequency_hz), second.share as f32)
+    });
     BeamSway {
         gain: finite(load.gain),
-        class: FrequencyClasses::default().coordinate(sway.frequency_hz as f32),
+        class: class(sway.frequency_hz),
+        second,
         averaging_speed_m_s: finite(sway.frequency_hz * equivalent_size_m(load.horizontal_m, load.vertical_m)),
         drag_damping_s_m: finite(sway.drag_damping_s_m),
         load_height_m: finite(load.height_m),
@@ -141,7 +164,7 @@ fn beam_sway(load: &BeamLoad, sway: &CompositeSway, drag_exponent: f32) -> BeamS
 /// The measures of a tree that foresters take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TreeSway {
-    /// First natural frequency of the trunk with all that it bears, Hz.
+    /// Natural frequency of the trunk with all that it bears, Hz; of two that by which gusts move it further.
     pub frequency_hz: f32,
     /// Diameter over bark at breast height (1.3 m along the stem; at the tip of a lower one), m.
     pub dbh_m: f32,

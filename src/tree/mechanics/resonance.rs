@@ -24,57 +24,52 @@
 //!
 //! Resonance is where the deflection lags behind the wind most, in the sense of its imaginary part: every mode adds its share of the static
 //! deflection there, over the width of a damped resonance. Branches as fast as the one that carries them divide its mode in many;
-//! that is one peak again. Of two peaks, as of a stem that is bent and sways along two axes, the one counts by which gusts move it
-//! further: their amplitude is as `sqrt(f S(f)) ~ f^(-1/3)`, with Kolmogorov's spectrum `S ~ f^(-5/3)`.
+//! that is one peak again. How the lag of all frequencies is found from that of a few, and which peaks of it a branch sways with,
+//! is told in `lag_curve.rs`.
 
-use super::{articulated::Articulated, bodies::Bodies, branches::LoadedBranch, four::Four, response::BranchResponse};
+use super::{
+    articulated::Articulated,
+    bodies::Bodies,
+    branches::LoadedBranch,
+    four::Four,
+    lag_curve::{FOURS, LagCurve, Resonance, SAMPLE_DAMPING_RATIO, Samples, sample_frequency},
+    response::BranchResponse,
+};
 use bevy::math::Vec4;
 use std::f64::consts::TAU;
 
-/// Damping ratio of the peaks, that of branches in a moderate wind: what is nearer together than some 15% is one peak.
-const DAMPING_RATIO: f32 = 0.12;
-/// The frequencies that are tried: the lowest by that of the slowest branch, the natural logarithm of the ratio of neighbours, and
-/// how many fours of them.
+/// The lowest frequency that is tried, by that of the slowest branch.
 const LOWEST_SHARE: f64 = 0.6;
-const STEP: f64 = 0.17;
-const FOURS: usize = 4;
-const FREQUENCIES: usize = 4 * FOURS;
-/// Amplitude of gusts as a power of their frequency.
-const GUST_EXPONENT: f64 = -1.0 / 3.0;
 
-/// The natural frequency of each branch, Hz; none of those that bear no other, and where no peak is within the frequencies that are tried.
-pub(super) fn resonances_hz(branches: &[LoadedBranch], responses: &[BranchResponse]) -> Vec<Option<f64>> {
+/// The resonance of each branch; none of those that bear no other, and where no peak is within the frequencies that are tried.
+pub(super) fn resonances(branches: &[LoadedBranch], responses: &[BranchResponse]) -> Vec<Option<Resonance>> {
     let bodies = Bodies::new(branches);
     let lowest_hz = lowest_hz(branches, responses);
-    let mut lags = vec![[0.0; FREQUENCIES]; bodies.len()];
+    let mut samples: Vec<Samples> = vec![[Vec4::ZERO; 2 * FOURS]; bodies.len()];
     let mut articulated = vec![Articulated::default(); bodies.len()];
     for four in 0..FOURS {
         let z = stiffness_ratio(lowest_hz, four);
-        for (index, lags) in lags.iter_mut().enumerate().rev() {
+        for (index, samples) in samples.iter_mut().enumerate().rev() {
             let answer = bodies.sway(index, z, &mut articulated);
-            // Hinges of the stiffness K (1 + 2 i zeta) in place of K.
-            let lag = answer.re * (2.0 * DAMPING_RATIO) - answer.im;
-            lags[4 * four..4 * four + 4].copy_from_slice(&lag.to_array());
+            (samples[four], samples[FOURS + four]) = (answer.re, answer.im);
         }
     }
-    let mut frequencies_hz = vec![None; branches.len()];
-    for (lags, branch) in lags.iter().zip(bodies.branches()) {
-        frequencies_hz[branch] = peak(lags).map(|by_lowest| lowest_hz * by_lowest);
+    let curve = LagCurve::shared();
+    let mut found = vec![None; branches.len()];
+    for (samples, branch) in samples.iter().zip(bodies.branches()) {
+        found[branch] = curve.resonance(samples, lowest_hz);
     }
-    frequencies_hz
+    found
 }
 
 /// `z` at four frequencies.
 fn stiffness_ratio(lowest_hz: f64, four: usize) -> Four {
     let square = Vec4::from_array(std::array::from_fn(|lane| {
-        (TAU * lowest_hz * ratio((4 * four + lane) as f64)).powi(2) as f32
+        (TAU * lowest_hz * sample_frequency(4 * four + lane)).powi(2) as f32
     }));
-    let norm = 1.0 + 4.0 * DAMPING_RATIO * DAMPING_RATIO;
-    Four { re: square / norm, im: square * (-2.0 * DAMPING_RATIO / norm) }
-}
-
-fn ratio(index: f64) -> f64 {
-    (STEP * index).exp()
+    let damping = 2.0 * SAMPLE_DAMPING_RATIO as f32;
+    let norm = 1.0 + damping * damping;
+    Four { re: square / norm, im: square * (-damping / norm) }
 }
 
 /// Where to begin: well below the slowest branch that bears others, were these rigid.
@@ -82,81 +77,4 @@ fn lowest_hz(branches: &[LoadedBranch], responses: &[BranchResponse]) -> f64 {
     let bearing = branches.iter().zip(responses).filter(|(branch, _)| branch.bears);
     let slowest_hz = bearing.map(|(branch, response)| response.sway.rigid_hz(branch)).fold(f64::INFINITY, f64::min);
     if slowest_hz.is_finite() { LOWEST_SHARE * slowest_hz } else { 1.0 }
-}
-
-/// Where gusts move a branch most, by the lowest frequency; none where that is beyond the frequencies that are tried.
-fn peak(lags: &[f32; FREQUENCIES]) -> Option<f64> {
-    let (mut gust, weaker) = (1.0, ratio(GUST_EXPONENT));
-    let motions = lags.map(|lag| {
-        let motion = f64::from(lag) * gust;
-        gust *= weaker;
-        motion
-    });
-    let is_highest = |&index: &usize| motions[index] >= motions[index - 1] && motions[index] > motions[index + 1];
-    let modes = (1..FREQUENCIES - 1).filter(is_highest).map(|index| mode_near(lags, index));
-    let modes = modes.filter(|mode| mode.motion > 0.0 && mode.motion.is_finite());
-    let strongest = modes.max_by(|a, b| a.motion.total_cmp(&b.motion))?;
-    let at_ends = motions[0].max(motions[FREQUENCIES - 1]);
-    (strongest.motion >= at_ends).then_some(strongest.frequency)
-}
-
-struct Mode {
-    /// By the lowest that is tried.
-    frequency: f64,
-    /// Of the sensor in gusts.
-    motion: f64,
-}
-
-/// The mode of which these lags are, at a sample and its neighbours. That of one mode is `c f / ((f_n^2 - f^2)^2 + (2 zeta f_n f)^2)`,
-/// so that `f` over it is a polynomial of the second degree in `f^2`: three samples tell all of it.
-fn mode_near(lags: &[f32; FREQUENCIES], index: usize) -> Mode {
-    let x: [f64; 3] = std::array::from_fn(|k| ratio((index + k - 1) as f64).powi(2));
-    let y: [f64; 3] = std::array::from_fn(|k| x[k].sqrt() / f64::from(lags[index + k - 1]));
-    let slopes = [(y[1] - y[0]) / (x[1] - x[0]), (y[2] - y[1]) / (x[2] - x[1])];
-    let curvature = (slopes[1] - slopes[0]) / (x[2] - x[0]);
-    let lowest = 0.5 * (x[0] + x[1] - slopes[0] / curvature);
-    let natural = lowest / (1.0 - 2.0 * f64::from(DAMPING_RATIO).powi(2));
-    // Where several modes run together these are not one's lags.
-    let square = if curvature > 0.0 { natural.clamp(x[0], x[2]) } else { x[1] };
-    let there = y[0] + (slopes[0] + curvature * (square - x[1])) * (square - x[0]);
-    let frequency = square.sqrt();
-    Mode { frequency, motion: frequency / there * frequency.powf(GUST_EXPONENT) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Lags of modes of these frequencies (by the lowest that is tried) and shares.
-    fn lags(modes: &[(f64, f64)]) -> [f32; FREQUENCIES] {
-        let lag = |frequency: f64| -> f64 {
-            let of_mode = |&(natural, share): &(f64, f64)| {
-                let r = frequency / natural;
-                let damping = 2.0 * f64::from(DAMPING_RATIO) * r;
-                share * damping / ((1.0 - r * r).powi(2) + damping * damping)
-            };
-            modes.iter().map(of_mode).sum()
-        };
-        std::array::from_fn(|index| lag(ratio(index as f64)) as f32)
-    }
-
-    #[test]
-    fn one_mode_is_found_exactly() {
-        for natural in [1.5, 2.0, 3.3, 5.0, 9.0] {
-            let found = peak(&lags(&[(natural, 1.0)])).unwrap();
-            assert!((found / natural - 1.0).abs() < 1e-4, "{found} of {natural}");
-        }
-    }
-
-    #[test]
-    fn of_two_modes_that_are_as_strong_the_slower_counts() {
-        for (slower, faster) in [(0.5, 0.5), (0.48, 0.52), (0.6, 0.4)] {
-            let found = peak(&lags(&[(2.0, slower), (3.0, faster)])).unwrap();
-            assert!((found / 2.0 - 1.0).abs() < 0.03, "{found}");
-        }
-        assert!(peak(&lags(&[(2.0, 0.3), (3.0, 0.7)])).unwrap() > 2.9, "the stronger one");
-        assert_eq!(peak(&[0.0; FREQUENCIES]), None);
-        let beyond = ratio(FREQUENCIES as f64 + 2.0);
-        assert_eq!(peak(&lags(&[(2.0, 0.02), (beyond, 0.98)])), None, "a weak one is not taken for what is beyond");
-    }
 }

@@ -125,7 +125,7 @@ mod tests {
     use super::*;
     use crate::tree::mechanics::{
         branches::Carrier,
-        resonance::resonances_hz,
+        resonance::resonances,
         response::BranchResponse,
         tests::{branch, lump, spring},
     };
@@ -173,9 +173,46 @@ mod tests {
             let carrier = Carrier { branch: 0, attach_m: stem_m };
             let twig = rod(stem_m, twig_m, twig_nm, &[(whole_m, twig_kg)], Some(carrier));
             let responses = [&stem, &twig].map(|branch| BranchResponse { loads: Vec::new(), sway: branch.sway() });
-            let hz = resonances_hz(&[stem, twig], &responses)[0].expect("within the frequencies tried");
+            let found = resonances(&[stem, twig], &responses)[0].expect("within the frequencies tried");
             let expected_hz = x.sqrt() / TAU;
-            assert!((hz / expected_hz - 1.0).abs() < 0.02, "{twig_nm}: {hz} {expected_hz}");
+            assert!((found.frequency_hz / expected_hz - 1.0).abs() < 0.02, "{twig_nm}: {found:?} {expected_hz}");
+        }
+    }
+
+    /// Both natural frequencies, `det(K - w^2 M) = 0`, and what each mode `phi` has of the static turn of the stem under the moment `Q` on it
+    /// alone, `phi_1^2 / (phi^T K phi)` by `1 / k_1`.
+    #[test]
+    fn a_twig_about_as_fast_as_its_stem_gives_that_two_frequencies() {
+        let ([stem_m, twig_m], [stem_kg, twig_kg], stem_nm) = ([2.0_f64, 0.5_f64], [1.0, 0.4], 4e4);
+        for twig_nm in [450.0, 615.0, 850.0] {
+            let whole_m = stem_m + twig_m;
+            let [a, b, c] = [
+                stem_kg * stem_m * stem_m + twig_kg * whole_m * whole_m,
+                twig_kg * whole_m * twig_m,
+                twig_kg * twig_m * twig_m,
+            ];
+            let (square, linear) = (a * c - b * b, stem_nm * c + twig_nm * a);
+            let root = (linear * linear - 4.0 * square * stem_nm * twig_nm).sqrt();
+            let modes = [-1.0, 1.0].map(|sign| {
+                let x = (linear + sign * root) / (2.0 * square);
+                let twig = (stem_nm - x * a) / (x * b);
+                (x.sqrt() / TAU, stem_nm / (stem_nm + twig_nm * twig * twig))
+            });
+            assert!((modes[0].1 + modes[1].1 - 1.0).abs() < 1e-9, "they make up the static turn");
+            let mut stem = rod(0.0, stem_m, stem_nm, &[(stem_m, stem_kg), (whole_m, twig_kg)], None);
+            let carrier = Carrier { branch: 0, attach_m: stem_m };
+            let mut twig = rod(stem_m, twig_m, twig_nm, &[(whole_m, twig_kg)], Some(carrier));
+            // The wind presses on the stem alone.
+            (stem.lumps[1].drag_kg_m, twig.lumps[0].drag_kg_m) = (0.0, 0.0);
+            let responses = [&stem, &twig].map(|branch| BranchResponse { loads: Vec::new(), sway: branch.sway() });
+            let found = resonances(&[stem, twig], &responses)[0].expect("within the frequencies tried");
+            let second = found.second.expect("two peaks");
+            let mut pairs = [(found.frequency_hz, 1.0 - second.share), (second.frequency_hz, second.share)];
+            pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for ((hz, share), (expected_hz, expected_share)) in pairs.into_iter().zip(modes) {
+                assert!((hz / expected_hz - 1.0).abs() < 0.03, "{twig_nm}: {hz} {expected_hz}");
+                assert!((share - expected_share).abs() < 0.04, "{twig_nm}, {expected_hz} Hz: {share} {expected_share}");
+            }
         }
     }
 }

@@ -1,13 +1,14 @@
 //! Trees as space frames: rods with six freedoms a node, by finite elements. An oracle for `tree::mechanics`, which it shares
 //! no formula with.
 //!
-//! `element` has the stiffness of a rod, `tree_matrix` solves, `modes` finds natural frequencies, `of_tree` makes a frame of
-//! a skeleton, `closed_forms` checks all of it.
+//! `element` has the stiffness of a rod, `tree_matrix` solves, `modes` finds natural frequencies and `peaks` what they are together,
+//! `of_tree` makes a frame of a skeleton, `closed_forms` checks all of it.
 
 pub mod closed_forms;
 pub mod element;
 pub mod modes;
 pub mod of_tree;
+pub mod peaks;
 pub mod tree_matrix;
 
 use element::{Matrix12, Rod, elastic, geometric, geometric_arm, rigid};

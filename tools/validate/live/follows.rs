@@ -1,12 +1,16 @@
 //! A live tree, driven step by step by the load of the periodic wind, against the table, which is computed in the frequency domain.
 //!
 //! The load is worked out here: basis signals of the wind's column, the admittance of the crowns, frequency by frequency, and samples at the
-//! frame rate.
+//! frame rate. A beam of two natural frequencies is two here, each with its share: in gusts both have the same size but not the same
+//! oscillators of the table, of which each stands for a load of its own. That live ones of two frequencies are the sum of two is the matter of a unit
+//! test.
 
 use crate::report::Report;
 use bevy::math::{Vec3, Vec3A, Vec4};
 use bevy_windwood::{
-    dynamics::{BeamLoad, LiveBeam, LiveSteps, LiveTree, RowWeights, SLOPE_TIP, TablePlace},
+    dynamics::{
+        BeamDynamics, BeamLoad, BeamSway, LiveBeam, LiveSteps, LiveTree, RowWeights, SLOPE_TIP, SecondMode, TablePlace,
+    },
     sway::{SwaySettings, WindResponse},
     tree::{Species, TreeModel},
     wind::{FieldSettings, WindField},
@@ -61,6 +65,25 @@ struct Experiment {
     signals: Vec<Vec4>,
 }
 
+/// A beam for each natural frequency of this one, with its share of the motion. `ratio` is that of neighbouring classes.
+fn modes(beam: &BeamDynamics, ratio: f32) -> impl Iterator<Item = BeamDynamics> {
+    let (sway, second) = (beam.in_leaf, beam.in_leaf.second);
+    let mode = |class_offset: f32, share: f32| {
+        let faster = ratio.powf(class_offset);
+        let in_leaf = BeamSway {
+            gain: share * sway.gain,
+            class: sway.class + class_offset,
+            averaging_speed_m_s: sway.averaging_speed_m_s * faster,
+            drag_damping_s_m: sway.drag_damping_s_m / faster,
+            second: SecondMode::default(),
+            ..sway
+        };
+        BeamDynamics { in_leaf, bare: in_leaf, ..*beam }
+    };
+    let both = [mode(0.0, 1.0 - second.share), mode(second.class_offset, second.share)];
+    both.into_iter().take(if second.share > 0.0 { 2 } else { 1 })
+}
+
 /// How a beam follows signals: free angle by each, rad.
 struct Follower {
     moving: [Vec3; 4],
@@ -98,10 +121,10 @@ impl Experiment {
     fn run(&self) -> Found {
         let (beam_wind, frame) = (self.wind.beam_wind(), self.wind.field.frame());
         let first_fast = beam_wind.grid.classes.first_fast();
-        let is_slow = |beam: &&bevy_windwood::dynamics::BeamDynamics| {
-            beam_wind.grid.classes.nearest(beam.in_leaf.class) < first_fast
-        };
-        let beams: Vec<_> = self.model.beams.iter().filter(is_slow).collect();
+        let is_slow = |beam: &BeamDynamics| beam_wind.grid.classes.nearest(beam.in_leaf.class) < first_fast;
+        let modes: Vec<BeamDynamics> =
+            self.model.beams.iter().flat_map(|beam| modes(beam, beam_wind.grid.classes.ratio)).collect();
+        let beams: Vec<&BeamDynamics> = modes.iter().filter(|beam| is_slow(beam)).collect();
         let prepared: Vec<LiveBeam> = beams.iter().map(|beam| LiveBeam::new(beam, &beam_wind, 1.0, 1.0)).collect();
         let followers: Vec<Follower> = beams
             .iter()
@@ -126,7 +149,7 @@ impl Experiment {
         let frames = self.signals.len() * FRAMES;
         let frame_s = self.wind.table.period_s() / frames as f64;
         let Some(steps) = LiveSteps::new(&beam_wind.grid, frame_s) else { unreachable!("a frame takes time") };
-        let mut found = Found { square: 0.0, size: 0.0, slow: beams.len(), all: self.model.beams.len() };
+        let mut found = Found { square: 0.0, size: 0.0, slow: beams.len(), all: modes.len() };
         // In the first period it comes into the steady state that the table has.
         for frame in 1..=2 * frames {
             live.step(&prepared, &steps, |beam, _| BeamLoad {

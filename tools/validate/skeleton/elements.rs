@@ -11,10 +11,14 @@ use nalgebra::{Vector3, Vector6};
 pub const ROUGHNESS_M: f64 = 0.3;
 pub const REFERENCE_HEIGHT_M: f64 = 10.0;
 
+/// The modes of a node in a uniform wind.
+pub fn modes(tree: &TreeFrame, node: usize, wind: Vector3<f64>) -> Vec<Mode> {
+    modes::modes(&tree.frame, GRAVITY_M_S2, &wind_load(tree, wind), (node, wind))
+}
+
 /// The resonance of a node in a uniform wind: that of the greatest share, and that which moves it furthest in gusts.
-pub fn peaks(tree: &TreeFrame, node: usize, wind: Vector3<f64>) -> [Mode; 2] {
-    let modes = modes::modes(&tree.frame, GRAVITY_M_S2, &wind_load(tree, wind), (node, wind));
-    [modes::peak(&modes), modes::gust_peak(&modes)]
+pub fn strongest(modes: &[Mode]) -> [Mode; 2] {
+    [modes::peak(modes), modes::gust_peak(modes)]
 }
 
 /// The frequency at which the node begins to resonate in a uniform wind, Hz.

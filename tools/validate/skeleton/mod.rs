@@ -8,15 +8,17 @@
 //!   the difference of the two vectors, over that of the finite elements' vector. Beside it is reported the same for a wind along the
 //!   branch.
 //! - *First frequency*: that of the trunk with all that it bears, at two thirds of its length, where it is measured on real
-//!   trees. Branches as fast as their trunk divide its mode in many, so it is that of the peak which they make together
-//!   ([`peaks`]). Beside it is reported how the trunk answers slow gusts ([`onset_hz`]), and the same by the peak that moves it furthest in
-//!   gusts, which are weaker the faster they are: of two peaks of nearly one strength that may be the other one.
+//!   trees. Branches as fast as their trunk divide its mode in many, so it is that of the peaks which they make together.
+//!   Where there are several of about the same strength, the product may have two, and all are compared ([`resonances`]). Beside it is
+//!   reported how the trunk answers slow gusts ([`onset_hz`]), and the error for those modes alone that move it furthest in gusts, which are
+//!   weaker the faster they are.
 //! - *Second frequency*: the product's next, which is that of the main branches. Each is held fast where it grows, the wind
 //!   blows across it, and the rest is as for the trunk.
 
 mod elements;
 mod product;
 mod pruning;
+mod resonances;
 
 use crate::{
     frame::{
@@ -29,9 +31,10 @@ use crate::{
 };
 use bevy::math::Vec3;
 use bevy_windwood::tree::{Species, TreeModel, skeleton::Skeleton};
-use elements::{Motion, onset_hz, peaks};
+use elements::{Motion, modes, onset_hz, strongest};
 use nalgebra::Vector3;
 use product::Product;
+use resonances::Resonances;
 
 const SPECIES: [&str; 6] = ["oak", "birch", "beech", "norway_spruce", "fir", "scots_pine"];
 /// Ages as shares of the mature age.
@@ -51,7 +54,7 @@ pub fn run() -> Report {
     report.at_most("finite_elements_worst_error", closed_forms::worst_error(), 0.005, "against seven closed forms");
     let mut all = Vec::new();
     println!("  errors (product / elements - 1)        trunk: tip  weightless  two thirds   branch tips");
-    println!("                       m       Hz  elements  (share)    onset     rigid  branches     rigid");
+    println!("                       m       Hz  elements  (share)    onset     rigid  branches     rigid  first");
     for name in SPECIES {
         let species = match shipped(name) {
             Ok(species) => species,
@@ -94,7 +97,7 @@ fn summarise(report: &mut Report, all: &[Comparison]) {
     report.record("branch_tip_along_median", median(|tree| &tree.along), along);
     report.at_most("first_frequency_error_worst", worst(|tree| &tree.first), 0.1, "trunk, all that it bears flexible");
     report.record("first_frequency_error_median", median(|tree| &tree.first), "the same");
-    let in_gusts = "by the peak that moves it furthest in gusts";
+    let in_gusts = "of the modes alone that move it furthest in gusts";
     report.record("first_frequency_in_gusts_worst", worst(|tree| &tree.first_in_gusts), in_gusts);
     report.record("first_onset_error_worst", worst(|tree| &tree.onset), "against the answer to slow gusts");
     report.record("first_onset_error_median", median(|tree| &tree.onset), "the same");
@@ -108,9 +111,28 @@ fn summarise(report: &mut Report, all: &[Comparison]) {
     report.record("second_frequency_error_median", median(|tree| &tree.second), "the same");
     report.record("second_frequency_in_gusts_worst", worst(|tree| &tree.second_in_gusts), in_gusts);
     report.record("second_frequency_in_gusts_median", median(|tree| &tree.second_in_gusts), in_gusts);
-    let second = sorted(|tree| &tree.second_in_gusts);
-    let right = second.iter().filter(|error| **error <= 0.2).count() as f64 / second.len() as f64;
-    report.record("second_frequency_in_gusts_right", right, "the share of branches that are right to 0.2 so");
+    let right = |of| {
+        let errors = sorted(of);
+        errors.iter().filter(|error| **error <= 0.2).count() as f64 / errors.len() as f64
+    };
+    report.record(
+        "second_frequency_right",
+        right(|tree| &tree.second),
+        "the share of branches that are right to 0.2 with all peaks",
+    );
+    let with_two = worst(|tree| &tree.second_of_two);
+    report.record("second_frequency_two_peaks_worst", with_two, "branches with two peaks that matter at most");
+    let many = (1.0 - sorted(|tree| &tree.second_of_two).len() as f64 / sorted(|tree| &tree.second).len() as f64).abs();
+    report.record("second_frequency_more_peaks", many, "the share of branches with more");
+    report.record(
+        "second_frequency_in_gusts_right",
+        right(|tree| &tree.second_in_gusts),
+        "the share of branches that are right to 0.2 with these",
+    );
+    report.record("mode_share_error_worst", worst(|tree| &tree.shares), "share of the second of two peaks, difference");
+    report.record("mode_share_error_median", median(|tree| &tree.shares), "the same");
+    let count = sorted(|tree| &tree.shares).len() as f64;
+    report.record("mode_share_beams", count, "trunks and main branches with two frequencies, of 108");
     report.record("second_rigid_error_worst", worst(|tree| &tree.second_rigid), "if all that they bear were rigid");
 }
 
@@ -130,8 +152,12 @@ struct Comparison {
     onset: Vec<f64>,
     rigid: Vec<f64>,
     second: Vec<f64>,
+    /// Of branches with no more than two peaks that matter.
+    second_of_two: Vec<f64>,
     second_in_gusts: Vec<f64>,
     second_rigid: Vec<f64>,
+    /// Of trunk and branches.
+    shares: Vec<f64>,
 }
 
 impl Comparison {
@@ -153,24 +179,28 @@ impl Comparison {
             motions.iter().zip(&winds).map(error).collect()
         };
         let frequency_hz = product.frequency_hz(0);
-        let [peaks, rigid_peaks] = [&tree, &rigid].map(|tree| winds.map(|wind| peaks(tree, sensor.node, wind)));
+        let [flexible, rigid] = [&tree, &rigid].map(|tree| winds.map(|wind| modes(tree, sensor.node, wind)));
+        let resonances = Resonances::compare(&product.modes(0), &flexible);
         let onsets_hz = winds.map(|wind| onset_hz(&tree, sensor.node, wind));
         let over = |theirs_hz: f64| frequency_hz / theirs_hz - 1.0;
+        let over_onset = |theirs_hz: f64| product.onset_hz(0) / theirs_hz - 1.0;
         let mut found = Self {
             height_m: model.height_m(),
             frequency_hz,
-            peak: peaks[0][0],
+            peak: strongest(&flexible[0])[0],
             onset_hz: onsets_hz[0],
             trunk: errors(&loaded, tip),
             weightless: errors(&weightless, tip),
             sensor: errors(&loaded, sensor),
             branches: Vec::new(),
             along: Vec::new(),
-            first: peaks.map(|[peak, _]| over(peak.frequency_hz)).to_vec(),
-            first_in_gusts: peaks.map(|[_, peak]| over(peak.frequency_hz)).to_vec(),
-            onset: onsets_hz.map(over).to_vec(),
-            rigid: rigid_peaks.map(|[peak, _]| over(peak.frequency_hz)).to_vec(),
+            first: vec![resonances.error],
+            first_in_gusts: vec![resonances.in_gusts],
+            onset: onsets_hz.map(over_onset).to_vec(),
+            rigid: rigid.map(|modes| over(strongest(&modes)[0].frequency_hz)).to_vec(),
             second: Vec::new(),
+            second_of_two: Vec::new(),
+            shares: resonances.share_error.into_iter().collect(),
             second_in_gusts: Vec::new(),
             second_rigid: Vec::new(),
         };
@@ -196,15 +226,19 @@ impl Comparison {
         self.branches.push(relative(&product.bend(first, tip, across), &theirs));
         let theirs_along = Motion::combined(loaded, along).bend(tree, first, tip);
         self.along.push((product.bend(first, tip, along) - theirs_along).norm() / theirs.norm());
-        let over = |stiffening: f64| {
+        let modes = |stiffening: f64| {
             let alone = branch(species, skeleton, first, |beam| if beams.contains(&beam) { 1.0 } else { stiffening });
             let sensor = alone.place(skeleton, &beams, SENSOR);
-            peaks(&alone, sensor.node, across).map(|peak| product.frequency_hz(first) / peak.frequency_hz - 1.0)
+            modes(&alone, sensor.node, across)
         };
-        let [greatest, in_gusts] = over(1.0);
-        self.second.push(greatest);
-        self.second_in_gusts.push(in_gusts);
-        self.second_rigid.push(over(STIFF)[0]);
+        let resonances = Resonances::compare(&product.modes(first), &[modes(1.0)]);
+        self.second.push(resonances.error);
+        if resonances.peaks <= 2 {
+            self.second_of_two.push(resonances.error);
+        }
+        self.second_in_gusts.push(resonances.in_gusts);
+        self.shares.extend(resonances.share_error);
+        self.second_rigid.push(product.frequency_hz(first) / strongest(&modes(STIFF))[0].frequency_hz - 1.0);
     }
 
     fn print(&self, name: &str) {
@@ -218,7 +252,7 @@ impl Comparison {
             worst(&self.branches),
         );
         println!(
-            "                   {:>5.1} {:>8.3} {:>9.3} ({:>6.2}) {:>8.3} {:>+9.3} {:>+9.3} {:>+9.3}",
+            "                   {:>5.1} {:>8.3} {:>9.3} ({:>6.2}) {:>8.3} {:>+9.3} {:>+9.3} {:>+9.3}  {:+.3}",
             self.height_m,
             self.frequency_hz,
             self.peak.frequency_hz,
@@ -227,6 +261,7 @@ impl Comparison {
             worst(&self.rigid),
             worst(&self.second),
             worst(&self.second_rigid),
+            worst(&self.first),
         );
     }
 }

@@ -1,7 +1,10 @@
 //! What the product says of a tree.
 
 use super::elements::{REFERENCE_HEIGHT_M, ROUGHNESS_M};
-use crate::frame::of_tree::{Place, vector};
+use crate::frame::{
+    modes::Mode,
+    of_tree::{Place, vector},
+};
 use bevy::math::{Mat3, Vec3};
 use bevy_windwood::{
     dynamics::{
@@ -32,9 +35,26 @@ impl<'a> Product<'a> {
         Self { model, pressure, poses }
     }
 
-    pub fn frequency_hz(&self, beam: usize) -> f64 {
+    /// The natural frequencies of a beam, one or two, Hz, and the share of each in its deflection.
+    pub fn modes(&self, beam: usize) -> Vec<Mode> {
         let classes = FrequencyClasses::default();
-        f64::from(classes.lowest_hz) * f64::from(classes.ratio).powf(f64::from(self.model.beams[beam].in_leaf.class))
+        let BeamSway { class, second, .. } = self.model.beams[beam].in_leaf;
+        let mode = |class: f32, share: f32| Mode {
+            frequency_hz: f64::from(classes.lowest_hz) * f64::from(classes.ratio).powf(f64::from(class)),
+            share: f64::from(share),
+        };
+        let both = [mode(class, 1.0 - second.share), mode(class + second.class_offset, second.share)];
+        both[..if second.share > 0.0 { 2 } else { 1 }].to_vec()
+    }
+
+    /// The frequency by which gusts move it furthest, Hz.
+    pub fn frequency_hz(&self, beam: usize) -> f64 {
+        self.modes(beam)[0].frequency_hz
+    }
+
+    /// The frequency at which it begins to resonate, Hz.
+    pub fn onset_hz(&self, beam: usize) -> f64 {
+        self.modes(beam).iter().map(|mode| mode.share / mode.frequency_hz.powi(2)).sum::<f64>().sqrt().recip()
     }
 
     /// Where a level wind moves a place, m by m^2/s^2.

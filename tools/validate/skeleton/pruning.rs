@@ -1,6 +1,6 @@
 //! Pruning: a conifer sways faster without its crown, but only when most of it is gone (Moore & Maguire 2004: some 80%).
 
-use super::{SENSOR, peaks};
+use super::{SENSOR, modes, strongest};
 use crate::{
     frame::of_tree::{chain, whole},
     report::Report,
@@ -45,7 +45,8 @@ pub fn measure(report: &mut Report) {
 fn frequencies_hz(species: &Species, skeleton: &Skeleton) -> [f64; 2] {
     let tree = whole(species, skeleton, |_| 1.0);
     let sensor = tree.place(skeleton, &chain(skeleton, 0), SENSOR);
-    [f64::from(tree_sway(species, skeleton).frequency_hz), peaks(&tree, sensor.node, Vector3::x())[0].frequency_hz]
+    let theirs = strongest(&modes(&tree, sensor.node, Vector3::x()));
+    [f64::from(tree_sway(species, skeleton).frequency_hz), theirs[0].frequency_hz]
 }
 
 /// The tree without its lowest branches, up to the height at which `share` of the mass that the trunk bears is gone.

@@ -6,7 +6,7 @@ use crate::{
     skeleton::{GRAVITY_M_S2, SENSOR},
 };
 use bevy_windwood::{
-    dynamics::{BeamDynamics, FrequencyClasses, NO_PARENT},
+    dynamics::{BeamDynamics, BeamSway, FrequencyClasses, NO_PARENT},
     tree::{Species, TreeModel},
 };
 use nalgebra::Vector3;
@@ -22,8 +22,9 @@ const SMALLEST_CELL_M: f64 = 0.05;
 pub struct Crown {
     pub name: String,
     pub height_m: f32,
-    /// Natural frequency of the trunk by the product, not rounded to a class, Hz.
-    pub frequency_hz: f64,
+    /// Natural frequencies of the trunk by the product, not rounded to a class, Hz, and their shares of its deflection.
+    pub frequencies_hz: [f64; 2],
+    pub shares: [f64; 2],
     pub cells: Vec<Cell>,
     /// The trunk's beams as the product has them.
     pub trunk: Vec<BeamDynamics>,
@@ -59,11 +60,13 @@ impl Crown {
             .filter(|(_, weight)| *weight > 0.0)
             .collect();
         let classes = FrequencyClasses::default();
-        let class = f64::from(model.beams[0].in_leaf.class);
+        let BeamSway { class, second, .. } = model.beams[0].in_leaf;
+        let frequency_hz = |class: f32| f64::from(classes.lowest_hz) * f64::from(classes.ratio).powf(f64::from(class));
         Self {
             name: format!("{name} {years:.0}"),
             height_m: model.height_m(),
-            frequency_hz: f64::from(classes.lowest_hz) * f64::from(classes.ratio).powf(class),
+            frequencies_hz: [class, class + second.class_offset].map(frequency_hz),
+            shares: [1.0 - second.share, second.share].map(f64::from),
             cells: cells(&pulls),
             trunk: trunk(&model, &beams),
         }

@@ -2,9 +2,9 @@
 //!
 //! `wind` synthesises turbulence at up to 96 cells of a crown, each known by eight places, apart from the crate's own field. `crown`
 //! has what each cell does to the trunk's tip, by finite elements. `oracle` sums the quadratic drag of all cells and steps
-//! the trunk's oscillator. `product` poses the same trunk from the product's tables.
+//! the trunk's oscillator, or both where it has two. `product` poses the same trunk from the product's tables.
 //!
-//! Both sides have the trunk's natural frequency and damping in common, and the tip's deflection in a steady wind: how far trees
+//! Both sides have the trunk's natural frequencies and damping in common, and the tip's deflection in a steady wind: how far trees
 //! bend is the matter of the topic `skeleton`. What is compared is the motion before the poses saturate, along and across
 //! the wind together, in the band from one cycle in the wind's period to 4 Hz.
 
@@ -22,7 +22,7 @@ use bevy_windwood::{
     wind::{FieldSettings, LogProfile},
 };
 use crown::Crown;
-use oracle::{Oscillator, linear_variances, simulate};
+use oracle::{Oscillator, Trunk, linear_variances, simulate};
 use rustfft::num_complex::Complex;
 use std::{ops::Range, thread};
 use wind::mean_speed_m_s;
@@ -52,8 +52,8 @@ pub fn run() -> Report {
             return report;
         }
     };
-    let oscillators = oscillators(&crowns);
-    let speeds = SPEEDS_M_S.map(|speed| compare(&crowns, &oscillators, &FieldSettings { speed, ..Default::default() }));
+    let trunks = trunks(&crowns);
+    let speeds = SPEEDS_M_S.map(|speed| compare(&crowns, &trunks, &FieldSettings { speed, ..Default::default() }));
     let all: Vec<&Comparison> = speeds.iter().flatten().collect();
     println!("  tree                   m      Hz    m/s  tip cm  product   ratio  octaves  mean  one wind  static");
     for (index, crown) in crowns.iter().enumerate() {
@@ -87,7 +87,7 @@ pub fn run() -> Report {
         speeds[1][AGES.len() - 1].rms_ratio(),
         "rms of its tip, product over oracle",
     );
-    linear_theory(&mut report, &crowns[AGES.len() - 1], &oscillators[AGES.len() - 1]);
+    linear_theory(&mut report, &crowns[AGES.len() - 1], &trunks[AGES.len() - 1]);
     report
 }
 
@@ -100,27 +100,33 @@ fn crowns() -> Result<Vec<Crown>, String> {
     Ok(crowns)
 }
 
-/// The damping ratio that the product gives a trunk in a wind.
-fn damping_ratio(crown: &Crown, settings: &FieldSettings) -> f64 {
+/// A trunk's oscillators, with the damping ratios that the product gives them in a wind.
+fn oscillators(crown: &Crown, settings: &FieldSettings) -> [Oscillator; 2] {
     let profile = LogProfile::from_reference(settings.speed, settings.roughness_m, settings.displacement_m);
     let mean = MeanWind::new(&profile, 10.0);
     let structure = SwaySettings::default().damping_ratio;
     let grid = OscillatorGrid::new(FrequencyClasses::default(), structure, mean.speed_m_s, 10.0);
-    f64::from(crown.trunk[0].in_leaf.damping_ratio(&BeamWind { stand: StandWind::open(mean), grid }, 1.0))
+    let ratios = crown.trunk[0].in_leaf.damping_ratios(&BeamWind { stand: StandWind::open(mean), grid }, 1.0);
+    let oscillator = |mode: usize| Oscillator {
+        frequency_hz: crown.frequencies_hz[mode],
+        damping_ratio: f64::from(ratios[mode]),
+        share: crown.shares[mode],
+    };
+    [oscillator(0), oscillator(1)]
 }
 
 /// Brings the oracle's deflection, which is that of the trunk at two thirds of its length, to the product's at the tip, in a
 /// steady wind.
-fn oscillators(crowns: &[Crown]) -> Vec<Oscillator> {
+fn trunks(crowns: &[Crown]) -> Vec<Trunk> {
     let steady = FieldSettings { speed: STEADY_SPEED_M_S, gustiness: 0.0, ..Default::default() };
     let tips = product::tips(crowns, &product::response(&steady));
-    let oscillator = |(crown, tips): (&Crown, &Vec<Vec<_>>)| {
+    let trunk = |(crown, tips): (&Crown, &Vec<Vec<_>>)| {
         let ours: Complex<f64> = tips[0][0];
         let theirs: f64 = crown.cells.iter().map(|cell| cell.weight * mean_speed_m_s(&steady, cell.at.y).powi(2)).sum();
         let static_factor = ours.re / theirs;
-        Oscillator { frequency_hz: crown.frequency_hz, damping_ratio: damping_ratio(crown, &steady), static_factor }
+        Trunk { oscillators: oscillators(crown, &steady), static_factor }
     };
-    crowns.iter().zip(&tips).map(oscillator).collect()
+    crowns.iter().zip(&tips).map(trunk).collect()
 }
 
 /// One tree in one wind, by both.
@@ -134,23 +140,20 @@ struct Comparison {
     static_factor: f64,
 }
 
-fn compare(crowns: &[Crown], oscillators: &[Oscillator], settings: &FieldSettings) -> Vec<Comparison> {
+fn compare(crowns: &[Crown], trunks: &[Trunk], settings: &FieldSettings) -> Vec<Comparison> {
     let (ours, means) = product_bands(crowns, settings);
-    let in_wind = |(crown, oscillator): (&Crown, &Oscillator)| Oscillator {
-        damping_ratio: damping_ratio(crown, settings),
-        ..*oscillator
-    };
-    let oscillators: Vec<Oscillator> = crowns.iter().zip(oscillators).map(in_wind).collect();
+    let in_wind = |(crown, trunk): (&Crown, &Trunk)| Trunk { oscillators: oscillators(crown, settings), ..*trunk };
+    let in_wind: Vec<Trunk> = crowns.iter().zip(trunks).map(in_wind).collect();
     let trees: Vec<usize> = (0..crowns.len()).collect();
     let of_tree = |&tree: &usize| {
-        let (theirs, mean_m) = simulate(&crowns[tree], &oscillators[tree], settings, 0..SEEDS);
-        let [crown, point] = linear_variances(&crowns[tree], &oscillators[tree], settings);
+        let (theirs, mean_m) = simulate(&crowns[tree], &in_wind[tree], settings, 0..SEEDS);
+        let [crown, point] = linear_variances(&crowns[tree], &in_wind[tree], settings);
         Comparison {
             ours: ours[tree],
             theirs,
             mean_ratio: means[tree] / mean_m,
             point_wind_ratio: (point / crown).sqrt(),
-            static_factor: oscillators[tree].static_factor,
+            static_factor: in_wind[tree].static_factor,
         }
     };
     in_parallel(&trees, of_tree)
@@ -200,7 +203,7 @@ impl Comparison {
             "  {:<18} {:>5.1} {:>7.2} {speed:>6.0} {theirs:>7.2} {ours:>9.2} {:>7.2} {octaves:>8.2} {:>5.2} {:>8.2} {:>6.2}",
             crown.name,
             crown.height_m,
-            crown.frequency_hz,
+            crown.frequencies_hz[0],
             self.rms_ratio(),
             self.mean_ratio,
             self.point_wind_ratio,
@@ -210,10 +213,10 @@ impl Comparison {
 }
 
 /// The oracle against the linear theory of buffeting, in weak turbulence.
-fn linear_theory(report: &mut Report, crown: &Crown, oscillator: &Oscillator) {
+fn linear_theory(report: &mut Report, crown: &Crown, trunk: &Trunk) {
     let weak = FieldSettings { gustiness: WEAK, ..Default::default() };
-    let simulated = simulate(crown, oscillator, &weak, 0..2 * SEEDS).0.variance();
-    let [linear, _] = linear_variances(crown, oscillator, &weak);
+    let simulated = simulate(crown, trunk, &weak, 0..2 * SEEDS).0.variance();
+    let [linear, _] = linear_variances(crown, trunk, &weak);
     report.at_most(
         "linear_theory_error",
         ((simulated / linear).sqrt() - 1.0).abs(),

@@ -1,6 +1,7 @@
 use super::*;
 use crate::dynamics::{
     beam::{BeamSway, BeamWind},
+    second_mode::SecondMode,
     test_beams,
 };
 use rustfft::num_complex::Complex;
@@ -20,6 +21,7 @@ fn beam(class: f32) -> LiveBeam {
         load_height_m: 10.0,
         averaging_speed_m_s: 0.1,
         drag_exponent: 0.0,
+        ..BeamSway::default()
     };
     LiveBeam::new(&test_beams::upright(sway, 1.0), &wind(), 1.0, 1.0)
 }
@@ -53,6 +55,41 @@ fn a_swaying_load_moves_a_beam_as_in_the_table() {
         // A load that is linear within each frame is a little smaller than the sine.
         assert!((error / size).sqrt() < 2e-3, "class {class}: {}", (error / size).sqrt());
     }
+}
+
+/// Loads, blows and bodies move a beam of two modes as the sum of two beams, each of one mode and with its share.
+#[test]
+fn a_beam_of_two_modes_moves_as_the_sum_of_two_beams() {
+    let (grid, share) = (wind().grid, 0.3);
+    let sway = BeamSway { gain: 1e-3, class: 9.0, load_height_m: 10.0, ..BeamSway::default() };
+    let live = |class: f32, second: SecondMode| {
+        let beam = test_beams::upright(BeamSway { class, second, ..sway }, 1.0);
+        [LiveBeam::new(&beam, &wind(), 1.0, 1.0)]
+    };
+    let both = live(9.0, SecondMode { class_offset: 4.0, share });
+    let single = [9.0, 13.0].map(|class| live(class, SecondMode::default()));
+    let steps = LiveSteps::new(&grid, FRAME_S).expect("time passes");
+    let mut trees = [&both, &single[0], &single[1]].map(|beams| LiveTree::new(beams, &grid));
+    let mut size = 0.0_f32;
+    for frame in 0..600 {
+        let load = steady(0.1 * (0.03 * frame as f32).sin());
+        for (tree, beams) in trees.iter_mut().zip([&both, &single[0], &single[1]]) {
+            tree.step(beams, &steps, |_, _| load);
+            match frame {
+                200 => tree.strike(0, Vec3A::Z * 0.02),
+                400 => drop(tree.push(0, Vec3A::X * 0.05, 1.0)),
+                _ => {}
+            }
+        }
+        let [found, a, b] = trees.each_ref().map(|tree| tree.angle(0));
+        // A push takes away the motion against it of each oscillator, here and there.
+        assert!(found.distance(a * (1.0 - share) + b * share) < 1e-5, "{frame}: {found}, {a} and {b}");
+        size = size.max(a.distance(b));
+    }
+    assert!(size > 0.02, "the modes differ: {size}");
+    // While it has the second mode with a share of none, it moves as the first alone.
+    trees[0].prepare(&single[0], &grid);
+    assert!(!trees[0].is_still(1e-6) && trees[0].angle(0) == trees[0].beams[0].first.angle());
 }
 
 #[test]
