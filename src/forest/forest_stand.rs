@@ -27,7 +27,7 @@ pub(super) struct ForestStand {
 }
 
 /// What of a stand is out of date.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Default)]
 pub(super) struct DueStand {
     /// Whether all of it is.
     pub everywhere: bool,
