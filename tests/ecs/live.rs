@@ -1,7 +1,11 @@
 //! Trees that a game touches: they wake, move and sleep again.
 
 use super::*;
-use bevy_windwood::sway::TreePose;
+use bevy_windwood::{
+    dynamics::{BeamSway, FrequencyClasses},
+    sway::{SwaySettings, TreePose},
+};
+use std::f32::consts::TAU;
 
 /// In a calm, so that nothing else moves.
 fn calm_app() -> App {
@@ -15,11 +19,26 @@ fn is_awake(app: &App, tree: Entity) -> bool {
     app.world().get::<LiveSway>(tree).is_some()
 }
 
+/// Frames in which a bend of a radian dies down to a hundred thousandth of that in the slowest mode of a tree's beams, as `exp(-zeta w t)`
+/// where wood alone damps it. It is in leaf, and its beams have rounded frequencies, which are off by a tenth at most.
+fn frames_to_rest(app: &App, tree: Entity) -> usize {
+    let grown = app.world().get::<Grown>(tree).expect("it is grown");
+    let model = app.world().resource::<Assets<TreeModel>>().get(&grown.model).expect("its model is there");
+    let classes = FrequencyClasses::default();
+    let slowest_class = |sway: &BeamSway| {
+        let second = sway.class + if sway.second.share > 0.0 { sway.second.class_offset } else { 0.0 };
+        sway.class.min(second)
+    };
+    let class = model.beams.iter().map(|beam| slowest_class(&beam.in_leaf)).fold(f32::INFINITY, f32::min);
+    let slowest_hz = classes.lowest_hz * classes.ratio.powf(class.max(0.0));
+    let time_s = 1e5_f32.ln() / (SwaySettings::default().damping_ratio * TAU * slowest_hz);
+    (1.1 * time_s / FRAME_S) as usize
+}
+
 /// Updates until the tree sleeps, with the tip of its stem at rest. Returns the farthest that it came from there.
 fn farthest_until_asleep(app: &mut App, tree: Entity, rest: Vec3) -> f32 {
     let mut farthest_m = 0.0_f32;
-    // A birch of 0.4 Hz that wood alone damps, by 0.05, takes some 80 s from a lean of a radian to a hundred thousandth.
-    for _ in 0..9000 {
+    for _ in 0..frames_to_rest(app, tree) {
         app.update();
         farthest_m = farthest_m.max(stem_tip(app).distance(rest));
         if !is_awake(app, tree) {
