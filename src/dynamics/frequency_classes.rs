@@ -47,6 +47,12 @@ impl FrequencyClasses {
         if coordinate.is_finite() { coordinate } else { self.quasi_static() as f32 }
     }
 
+    /// Natural frequency at a place on the scale of classes, Hz: the inverse of [`coordinate`](Self::coordinate).
+    #[must_use]
+    pub fn frequency_at_hz(&self, coordinate: f32) -> f32 {
+        self.lowest_hz * self.ratio.powf(coordinate)
+    }
+
     /// What an instance's scale adds to its beams' coordinates: a tree `scale` times as large sways as many times more
     /// slowly. A scale that is not a positive number adds nothing.
     pub(crate) fn shift(&self, scale: f32) -> f32 {

@@ -108,8 +108,7 @@ fn stem_to_top(model: &TreeModel) -> Option<(Vec<BeamDynamics>, Vec3)> {
 
 /// The frequency of a beam, Hz.
 pub fn frequency_hz(beam: &BeamDynamics, leaf_share: f32) -> f32 {
-    let classes = FrequencyClasses::default();
-    classes.lowest_hz * classes.ratio.powf(beam.sway(leaf_share).class)
+    FrequencyClasses::default().frequency_at_hz(beam.sway(leaf_share).class)
 }
 
 /// Of a tree of that size over its model's: a larger one sways more slowly.

@@ -120,7 +120,7 @@ pub(super) fn prepare_stands(
         let is_settled = |handle: &Handle<Species>| {
             known.contains_key(&handle.id())
                 || matches!(assets.get_load_state(handle), Some(LoadState::Failed(_)))
-                || species.get(handle).is_some_and(|species| species.validate().is_err())
+                || species.contains(handle) && valid(handle.id()).is_none()
         };
         if forest.species().iter().all(is_settled) {
             let now = |handle: &Handle<Species>| known.get(&handle.id()).map(|known| known.in_season(season.wrapped()));

@@ -24,13 +24,12 @@ fn is_awake(app: &App, tree: Entity) -> bool {
 fn frames_to_rest(app: &App, tree: Entity) -> usize {
     let grown = app.world().get::<Grown>(tree).expect("it is grown");
     let model = app.world().resource::<Assets<TreeModel>>().get(&grown.model).expect("its model is there");
-    let classes = FrequencyClasses::default();
     let slowest_class = |sway: &BeamSway| {
         let second = sway.class + if sway.second.share > 0.0 { sway.second.class_offset } else { 0.0 };
         sway.class.min(second)
     };
     let class = model.beams.iter().map(|beam| slowest_class(&beam.in_leaf)).fold(f32::INFINITY, f32::min);
-    let slowest_hz = classes.lowest_hz * classes.ratio.powf(class.max(0.0));
+    let slowest_hz = FrequencyClasses::default().frequency_at_hz(class.max(0.0));
     let time_s = 1e5_f32.ln() / (SwaySettings::default().damping_ratio * TAU * slowest_hz);
     (1.1 * time_s / FRAME_S) as usize
 }

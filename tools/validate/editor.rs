@@ -169,7 +169,7 @@ fn closed(report: &mut Report) -> Result<(), String> {
     report.record(
         "closed_added_us",
         1e3 * added_ms,
-        "what it adds while it is closed, mean of eight apps of either kind",
+        "what it adds while it is closed, mean of several apps of either kind",
     );
     report.record("closed_added_error_us", 1e3 * error_ms, "standard error of that, by how apps of one kind differ");
     report.at_most(
@@ -228,18 +228,15 @@ fn open(report: &mut Report) -> Result<(), String> {
                         }
                         frames_ms(&mut app, 1)[0]
                     };
-                    (0..PANEL_FRAMES).map(frame).sum::<f64>() / PANEL_FRAMES as f64
+                    mean(&(0..PANEL_FRAMES).map(frame).collect::<Vec<_>>())
                 });
             added_ms[0].push(open_ms - closed_ms);
             added_ms[1].push(pointer_ms - closed_ms);
         }
-        for ((most_ms, key), (added_ms, told)) in most_ms.iter_mut().zip(keys).zip(added_ms.iter().zip([
-            "CPU time that the open panel adds to a frame, mean of sixty",
-            "the same while the pointer moves over it",
-        ])) {
-            *most_ms = most_ms.max(median(added_ms));
-            report.record(key, median(added_ms), told);
-        }
+        let added_ms = added_ms.map(|of_rounds| median(&of_rounds));
+        most_ms = std::array::from_fn(|which| most_ms[which].max(added_ms[which]));
+        report.record(keys[0], added_ms[0], "CPU time that the open panel adds to a frame, mean of sixty");
+        report.record(keys[1], added_ms[1], "the same while the pointer moves over it");
     }
     report.at_most("open_ms", most_ms[0], 1.0, "the dearest of them");
     report.record("pointer_ms", most_ms[1], "the dearest while the pointer moves");

@@ -116,7 +116,7 @@ impl Tree<'_> {
 
     fn frequency_hz(&self, is_in_leaf: bool) -> f64 {
         let classes = self.winds[0].1.table.grid.classes;
-        f64::from(classes.lowest_hz) * f64::from(classes.ratio).powf(f64::from(self.trunk(is_in_leaf).class))
+        f64::from(classes.frequency_at_hz(self.trunk(is_in_leaf).class))
     }
 
     fn damping(&self, is_in_leaf: bool) -> f64 {

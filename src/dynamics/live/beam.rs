@@ -48,7 +48,7 @@ impl LiveBeam {
     pub fn new(beam: &BeamDynamics, wind: &BeamWind, scale: f32, leaf_share: f32) -> Self {
         let (sway, grid) = (beam.sway(leaf_share), &wind.grid);
         let finite = |value: f32| if value.is_finite() { value } else { 0.0 };
-        let own_hz = grid.classes.lowest_hz * grid.classes.ratio.powf(sway.class);
+        let own_hz = grid.classes.frequency_at_hz(sway.class);
         let oscillating = grid.classes.quasi_static().max(1) - 1;
         let class_of = |coordinate: f32| grid.classes.nearest(coordinate + grid.classes.shift(scale)).min(oscillating);
         let [damped, second_damped] = sway.damping_ratios(wind, scale).map(|ratio| grid.damped_share(ratio));

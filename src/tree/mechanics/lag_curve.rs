@@ -20,6 +20,7 @@
 //! both has of the deflection follows from both heights, to which the other adds its flank.
 
 use bevy::math::Vec4;
+use nalgebra::{Cholesky, SMatrix, SVector};
 use std::sync::LazyLock;
 
 /// Samples, in fours.
@@ -127,9 +128,10 @@ impl LagCurve {
         }
         let mean_power = (0..UNKNOWNS).map(|index| covariances[index][index]).sum::<f64>() / UNKNOWNS as f64;
         (0..UNKNOWNS).for_each(|index| covariances[index][index] += NOISE * mean_power);
-        let factor = cholesky(covariances);
+        // Definite by its noise.
+        let factor = Cholesky::new_unchecked(SMatrix::from(covariances));
         let weights = with_points.into_iter().map(|row| {
-            let solved = solved(&factor, row);
+            let solved = factor.solve(&SVector::from(row));
             of_answers(std::array::from_fn(|index| solved[index] * gusts[index % SAMPLES]))
         });
         let point = |(index, frequency): (i32, f64)| (frequency, power(POINT_GUST_RATIO, index - POINTS_BEFORE) as f32);
@@ -227,31 +229,6 @@ fn of_answers(weights: Row) -> Samples {
         (weight / norm) as f32
     };
     std::array::from_fn(|four| Vec4::from_array(std::array::from_fn(|lane| of_answer(4 * four + lane))))
-}
-
-/// `L` of a symmetric matrix `L L^T`.
-fn cholesky(mut matrix: [Row; UNKNOWNS]) -> [Row; UNKNOWNS] {
-    for row in 0..UNKNOWNS {
-        for column in 0..=row {
-            let known: f64 = (0..column).map(|k| matrix[row][k] * matrix[column][k]).sum();
-            let left = matrix[row][column] - known;
-            matrix[row][column] = if column == row { left.sqrt() } else { left / matrix[column][column] };
-        }
-    }
-    matrix
-}
-
-/// Solves `L L^T x = row`.
-fn solved(factor: &[Row; UNKNOWNS], mut row: Row) -> Row {
-    for index in 0..UNKNOWNS {
-        let known: f64 = (0..index).map(|k| factor[index][k] * row[k]).sum();
-        row[index] = (row[index] - known) / factor[index][index];
-    }
-    for index in (0..UNKNOWNS).rev() {
-        let known: f64 = (index + 1..UNKNOWNS).map(|k| factor[k][index] * row[k]).sum();
-        row[index] = (row[index] - known) / factor[index][index];
-    }
-    row
 }
 
 #[cfg(test)]

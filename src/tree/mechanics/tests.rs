@@ -14,8 +14,7 @@ use std::f64::consts::TAU;
 
 /// Natural frequency of a row's branch with all that it bears, Hz.
 fn natural_frequency_hz(row: &BeamDynamics) -> f32 {
-    let classes = FrequencyClasses::default();
-    classes.lowest_hz * classes.ratio.powf(row.in_leaf.class)
+    FrequencyClasses::default().frequency_at_hz(row.in_leaf.class)
 }
 
 fn shipped(name: &str) -> Species {

@@ -125,6 +125,7 @@ mod tests {
     use super::*;
     use crate::tree::mechanics::{
         branches::Carrier,
+        lag_curve::Resonance,
         resonance::resonances,
         response::BranchResponse,
         tests::{branch, lump, spring},
@@ -155,57 +156,66 @@ mod tests {
         }
     }
 
-    /// The lower natural frequency of a mass on a rod on another: `det(K - w^2 M) = 0`.
+    /// A mass on a rod, the twig, on another, the stem.
+    const LENGTHS_M: [f64; 2] = [2.0, 0.5];
+    const MASSES_KG: [f64; 2] = [1.0, 0.4];
+    const STEM_NM: f64 = 4e4;
+
+    /// Both natural frequencies, rad/s, as their squares, for a spring of the twig: `det(K - w^2 M) = 0`. Beside each the turn of the twig by
+    /// that of the stem.
+    fn double_pendulum(twig_nm: f64) -> [[f64; 2]; 2] {
+        let ([stem_m, twig_m], [stem_kg, twig_kg]) = (LENGTHS_M, MASSES_KG);
+        let whole_m = stem_m + twig_m;
+        let [a, b, c] = [
+            stem_kg * stem_m * stem_m + twig_kg * whole_m * whole_m,
+            twig_kg * whole_m * twig_m,
+            twig_kg * twig_m * twig_m,
+        ];
+        // In x = w^2: (a c - b^2) x^2 - (k1 c + k2 a) x + k1 k2.
+        let (square, linear) = (a * c - b * b, STEM_NM * c + twig_nm * a);
+        let root = (linear * linear - 4.0 * square * STEM_NM * twig_nm).sqrt();
+        [-root, root].map(|root| {
+            let x = (linear + root) / (2.0 * square);
+            [x, (STEM_NM - x * a) / (x * b)]
+        })
+    }
+
+    /// Its branches, stem and twig.
+    fn stem_with_twig(twig_nm: f64) -> [LoadedBranch; 2] {
+        let ([stem_m, twig_m], [stem_kg, twig_kg]) = (LENGTHS_M, MASSES_KG);
+        let whole_m = stem_m + twig_m;
+        let carrier = Carrier { branch: 0, attach_m: stem_m };
+        [
+            rod(0.0, stem_m, STEM_NM, &[(stem_m, stem_kg), (whole_m, twig_kg)], None),
+            rod(stem_m, twig_m, twig_nm, &[(whole_m, twig_kg)], Some(carrier)),
+        ]
+    }
+
+    fn resonance_of_stem(branches: &[LoadedBranch; 2]) -> Resonance {
+        let responses = branches.each_ref().map(|branch| BranchResponse { loads: Vec::new(), sway: branch.sway() });
+        resonances(branches, &responses)[0].expect("within the frequencies tried")
+    }
+
     #[test]
     fn a_stem_with_a_twig_sways_as_a_double_pendulum_on_springs() {
-        let ([stem_m, twig_m], [stem_kg, twig_kg], stem_nm) = ([2.0_f64, 0.5_f64], [1.0, 0.4], 4e4);
         for twig_nm in [2.5e3, 4e3, 2.5e4] {
-            let whole_m = stem_m + twig_m;
-            let [a, b, c] = [
-                stem_kg * stem_m * stem_m + twig_kg * whole_m * whole_m,
-                twig_kg * whole_m * twig_m,
-                twig_kg * twig_m * twig_m,
-            ];
-            // In x = w^2: (a c - b^2) x^2 - (k1 c + k2 a) x + k1 k2.
-            let (square, linear) = (a * c - b * b, stem_nm * c + twig_nm * a);
-            let x = (linear - (linear * linear - 4.0 * square * stem_nm * twig_nm).sqrt()) / (2.0 * square);
-            let stem = rod(0.0, stem_m, stem_nm, &[(stem_m, stem_kg), (whole_m, twig_kg)], None);
-            let carrier = Carrier { branch: 0, attach_m: stem_m };
-            let twig = rod(stem_m, twig_m, twig_nm, &[(whole_m, twig_kg)], Some(carrier));
-            let responses = [&stem, &twig].map(|branch| BranchResponse { loads: Vec::new(), sway: branch.sway() });
-            let found = resonances(&[stem, twig], &responses)[0].expect("within the frequencies tried");
-            let expected_hz = x.sqrt() / TAU;
+            let found = resonance_of_stem(&stem_with_twig(twig_nm));
+            let expected_hz = double_pendulum(twig_nm)[0][0].sqrt() / TAU;
             assert!((found.frequency_hz / expected_hz - 1.0).abs() < 0.02, "{twig_nm}: {found:?} {expected_hz}");
         }
     }
 
-    /// Both natural frequencies, `det(K - w^2 M) = 0`, and what each mode `phi` has of the static turn of the stem under the moment `Q` on it
-    /// alone, `phi_1^2 / (phi^T K phi)` by `1 / k_1`.
+    /// And what each mode `phi` has of the static turn of the stem under the moment `Q` on it alone, `phi_1^2 / (phi^T K phi)` by `1 / k_1`.
     #[test]
     fn a_twig_about_as_fast_as_its_stem_gives_that_two_frequencies() {
-        let ([stem_m, twig_m], [stem_kg, twig_kg], stem_nm) = ([2.0_f64, 0.5_f64], [1.0, 0.4], 4e4);
         for twig_nm in [450.0, 615.0, 850.0] {
-            let whole_m = stem_m + twig_m;
-            let [a, b, c] = [
-                stem_kg * stem_m * stem_m + twig_kg * whole_m * whole_m,
-                twig_kg * whole_m * twig_m,
-                twig_kg * twig_m * twig_m,
-            ];
-            let (square, linear) = (a * c - b * b, stem_nm * c + twig_nm * a);
-            let root = (linear * linear - 4.0 * square * stem_nm * twig_nm).sqrt();
-            let modes = [-1.0, 1.0].map(|sign| {
-                let x = (linear + sign * root) / (2.0 * square);
-                let twig = (stem_nm - x * a) / (x * b);
-                (x.sqrt() / TAU, stem_nm / (stem_nm + twig_nm * twig * twig))
-            });
+            let modes =
+                double_pendulum(twig_nm).map(|[x, twig]| (x.sqrt() / TAU, STEM_NM / (STEM_NM + twig_nm * twig * twig)));
             assert!((modes[0].1 + modes[1].1 - 1.0).abs() < 1e-9, "they make up the static turn");
-            let mut stem = rod(0.0, stem_m, stem_nm, &[(stem_m, stem_kg), (whole_m, twig_kg)], None);
-            let carrier = Carrier { branch: 0, attach_m: stem_m };
-            let mut twig = rod(stem_m, twig_m, twig_nm, &[(whole_m, twig_kg)], Some(carrier));
+            let [mut stem, mut twig] = stem_with_twig(twig_nm);
             // The wind presses on the stem alone.
             (stem.lumps[1].drag_kg_m, twig.lumps[0].drag_kg_m) = (0.0, 0.0);
-            let responses = [&stem, &twig].map(|branch| BranchResponse { loads: Vec::new(), sway: branch.sway() });
-            let found = resonances(&[stem, twig], &responses)[0].expect("within the frequencies tried");
+            let found = resonance_of_stem(&[stem, twig]);
             let second = found.second.expect("two peaks");
             let mut pairs = [(found.frequency_hz, 1.0 - second.share), (second.frequency_hz, second.share)];
             pairs.sort_by(|a, b| a.0.total_cmp(&b.0));

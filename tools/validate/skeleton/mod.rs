@@ -122,7 +122,8 @@ fn summarise(report: &mut Report, all: &[Comparison]) {
     );
     let with_two = worst(|tree| &tree.second_of_two);
     report.record("second_frequency_two_peaks_worst", with_two, "branches with two peaks that matter at most");
-    let many = (1.0 - sorted(|tree| &tree.second_of_two).len() as f64 / sorted(|tree| &tree.second).len() as f64).abs();
+    let count = |of| sorted(of).len() as f64;
+    let many = 1.0 - count(|tree| &tree.second_of_two) / count(|tree| &tree.second);
     report.record("second_frequency_more_peaks", many, "the share of branches with more");
     report.record(
         "second_frequency_in_gusts_right",
@@ -131,8 +132,11 @@ fn summarise(report: &mut Report, all: &[Comparison]) {
     );
     report.record("mode_share_error_worst", worst(|tree| &tree.shares), "share of the second of two peaks, difference");
     report.record("mode_share_error_median", median(|tree| &tree.shares), "the same");
-    let count = sorted(|tree| &tree.shares).len() as f64;
-    report.record("mode_share_beams", count, "trunks and main branches with two frequencies, of 108");
+    report.record(
+        "mode_share_beams",
+        count(|tree| &tree.shares),
+        "trunks and main branches with two frequencies, of 108",
+    );
     report.record("second_rigid_error_worst", worst(|tree| &tree.second_rigid), "if all that they bear were rigid");
 }
 

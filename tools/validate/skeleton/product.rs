@@ -40,7 +40,7 @@ impl<'a> Product<'a> {
         let classes = FrequencyClasses::default();
         let BeamSway { class, second, .. } = self.model.beams[beam].in_leaf;
         let mode = |class: f32, share: f32| Mode {
-            frequency_hz: f64::from(classes.lowest_hz) * f64::from(classes.ratio).powf(f64::from(class)),
+            frequency_hz: f64::from(classes.frequency_at_hz(class)),
             share: f64::from(share),
         };
         let both = [mode(class, 1.0 - second.share), mode(class + second.class_offset, second.share)];

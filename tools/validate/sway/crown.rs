@@ -61,7 +61,7 @@ impl Crown {
             .collect();
         let classes = FrequencyClasses::default();
         let BeamSway { class, second, .. } = model.beams[0].in_leaf;
-        let frequency_hz = |class: f32| f64::from(classes.lowest_hz) * f64::from(classes.ratio).powf(f64::from(class));
+        let frequency_hz = |class: f32| f64::from(classes.frequency_at_hz(class));
         Self {
             name: format!("{name} {years:.0}"),
             height_m: model.height_m(),
