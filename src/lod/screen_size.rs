@@ -28,7 +28,7 @@ impl Default for LodScreenSizes {
     /// Full trees from two thirds of a picture of 1080 pixels on; of 25 m in a view of 45° that is at 47 m, and the medium
     /// level ends at 255 m: where a tree is no larger than a view of its impostor.
     fn default() -> Self {
-        Self { high_px: 700.0, medium_px: 128.0, quality: 1.0, margin: 0.08 }
+        Self { high_px: 700.0, medium_px: 128.0, quality: 1.0, margin: 0.04 }
     }
 }
 

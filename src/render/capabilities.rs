@@ -7,10 +7,11 @@ use bevy::{
         RenderApp,
         batching::gpu_preprocessing::{GpuPreprocessingMode, GpuPreprocessingSupport},
         render_resource::WgpuLimits,
-        renderer::RenderDevice,
+        renderer::{RenderAdapterInfo, RenderDevice},
         settings::WgpuFeatures,
     },
 };
+use wgpu_types::DeviceType;
 
 /// How this machine can draw trees. It is found out once, when the app starts.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,8 +22,12 @@ pub struct RenderCapabilities {
     pub culls_on_gpu: bool,
     /// Beams that can be posed at once, over all trees that are seen; trees beyond that stand still.
     pub max_poses: u32,
-    /// Whether textures may be compressed in blocks (BC1 to BC4).
-    pub reads_compressed_textures: bool,
+    /// Whether it is a software renderer. It runs every branch of a shader, so shaders are compiled for the lights that there are
+    /// ([`TreeLighting`](super::TreeLighting)).
+    pub is_software: bool,
+    /// Whether textures are compressed in blocks (BC1 to BC5): where the device can read these. A software renderer can, but takes several
+    /// times as long as for plain ones, and has no memory of its own to save.
+    pub compresses_textures: bool,
     /// Size of the largest table that a shader can read, bytes.
     pub max_table_bytes: u64,
 }
@@ -55,8 +60,10 @@ impl RenderCapabilities {
         // Poses may have two halves, and their reserve ends where the device can bind no more.
         let max_table_bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let max_poses = u32::try_from(max_table_bytes / (2 * POSE_BYTES as u64)).unwrap_or(u32::MAX);
+        let adapter = render_world.get_resource::<RenderAdapterInfo>();
+        let is_software = adapter.is_some_and(|adapter| adapter.device_type == DeviceType::Cpu);
         let features = render_world.get_resource::<RenderDevice>()?.features();
-        let reads_compressed_textures = features.contains(WgpuFeatures::TEXTURE_COMPRESSION_BC);
-        Some(Self { sways, culls_on_gpu, max_poses, reads_compressed_textures, max_table_bytes })
+        let compresses_textures = !is_software && features.contains(WgpuFeatures::TEXTURE_COMPRESSION_BC);
+        Some(Self { sways, culls_on_gpu, max_poses, is_software, compresses_textures, max_table_bytes })
     }
 }

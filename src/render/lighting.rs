@@ -1,7 +1,9 @@
 //! Which lights trees are lit by.
 
+use super::capabilities::RenderCapabilities;
 use bevy::{
-    pbr::{ExtendedMaterial, MaterialExtension},
+    light::{AtmosphereEnvironmentMapLight, GeneratedEnvironmentMapLight, LightProbe},
+    pbr::{ContactShadows, ExtendedMaterial, MaterialExtension},
     prelude::*,
 };
 use serde::{Deserialize, Serialize};
@@ -10,7 +12,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Resource, Default)]
 pub enum TreeLighting {
-    /// All that Bevy knows.
+    /// All that Bevy knows. On a software renderer shaders are compiled as under [`SunOnly`](Self::SunOnly) for as long as the app has no
+    /// other light, which changes no picture.
     #[default]
     AllLights,
     /// Directional lights, with their shadows, and the ambient light: no point lights, no spot lights, no environment maps.
@@ -38,10 +41,30 @@ impl TreeLights {
     }
 }
 
-/// Finds out which lights there are.
-pub(crate) fn find_lights(lighting: Res<TreeLighting>, suns: Query<&DirectionalLight>, mut lights: ResMut<TreeLights>) {
-    let shadows = *lighting == TreeLighting::SunOnly && suns.iter().any(|sun| sun.shadow_maps_enabled);
-    lights.set_if_neq(TreeLights { lighting: *lighting, shadows });
+/// What trees are lit by beside suns and the ambient light.
+type OtherLight = Or<(
+    With<PointLight>,
+    With<SpotLight>,
+    With<RectLight>,
+    With<LightProbe>,
+    With<EnvironmentMapLight>,
+    With<GeneratedEnvironmentMapLight>,
+    With<AtmosphereEnvironmentMapLight>,
+    With<ContactShadows>,
+)>;
+
+/// Finds out which lights there are. A GPU has the shaders of all of them at once: it gains little by fewer, and while it compiled others,
+/// when the first lamp is lit, there would be no trees.
+pub(crate) fn find_lights(
+    lighting: Res<TreeLighting>,
+    capabilities: Res<RenderCapabilities>,
+    suns: Query<&DirectionalLight>,
+    others: Query<(), OtherLight>,
+    mut lights: ResMut<TreeLights>,
+) {
+    let lighting = if capabilities.is_software && others.is_empty() { TreeLighting::SunOnly } else { *lighting };
+    let shadows = lighting == TreeLighting::SunOnly && suns.iter().any(|sun| sun.shadow_maps_enabled);
+    lights.set_if_neq(TreeLights { lighting, shadows });
 }
 
 /// A material that is lit as trees are.

@@ -45,7 +45,7 @@ impl Default for LevelOfDetail {
         Self {
             style: LevelStyle::default(),
             screen_sizes: LodScreenSizes::default(),
-            fade: 0.1,
+            fade: 0.05,
             shadow_impostors_from_heights: 1.0,
             changes_per_frame: 128,
             bake: LodBakeSettings::default(),

@@ -9,6 +9,7 @@ pub(crate) fn load_shaders(app: &mut App) {
     load_shader_library!(app, "shaders/cross_fade.wesl");
     load_shader_library!(app, "shaders/frame.wesl");
     load_shader_library!(app, "shaders/impostor.wesl");
+    load_shader_library!(app, "shaders/impostor_output.wesl");
     load_shader_library!(app, "shaders/instances.wesl");
     load_shader_library!(app, "shaders/green_wood.wesl");
     load_shader_library!(app, "shaders/leaf.wesl");

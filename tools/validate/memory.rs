@@ -14,7 +14,7 @@ use bevy::{
 };
 use bevy_windwood::{
     prelude::*,
-    render::SwayBuffers,
+    render::{RenderCapabilities, SwayBuffers},
     scatter::{
         ForestPlan,
         plan::{Area, Shape, Stock},
@@ -144,6 +144,8 @@ fn measure() -> Result<Memory, String> {
     let mut app = App::new();
     app.add_plugins((capture::headless_engine(None), WindwoodPlugins));
     capture::begin(&mut app)?;
+    // As on a GPU, whatever this device is.
+    app.world_mut().resource_mut::<RenderCapabilities>().compresses_textures = true;
     let target = capture::target(&mut app, SIZE);
     grid::spawn_ground_and_sun(app.world_mut());
     capture::step(&mut app);

@@ -1,12 +1,19 @@
 //! The camera that draws the panels, over whatever others draw to the same window or image.
 
-use super::workbench::Workbench;
+use super::{
+    panel_picture::{is_new, keep_picture, show_picture},
+    workbench::Workbench,
+};
 use bevy::{
-    camera::{CameraOutputMode, RenderTarget, visibility::RenderLayers},
+    camera::{CameraMainTextureUsages, CameraOutputMode, RenderTarget, visibility::RenderLayers},
     core_pipeline::upscaling::upscaling,
     ecs::schedule::{ScheduleBuildSettings, ScheduleLabel},
     prelude::*,
-    render::{RenderApp, camera::CameraRenderGraph, render_resource::BlendState},
+    render::{
+        RenderApp,
+        camera::CameraRenderGraph,
+        render_resource::{BlendState, TextureUsages},
+    },
 };
 use bevy_egui::{
     EguiContexts, PrimaryEguiContext,
@@ -34,7 +41,8 @@ pub(super) fn plugin(app: &mut App) {
     let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
     let mut passes = Schedule::new(DrawPanels);
     passes.set_build_settings(ScheduleBuildSettings { auto_insert_apply_deferred: false, ..default() });
-    passes.add_systems((prepare_egui_pass, egui_pass, upscaling).chain());
+    let paint = (prepare_egui_pass, egui_pass, keep_picture).chain().run_if(is_new);
+    passes.add_systems((paint, show_picture.run_if(not(is_new)), upscaling).chain());
     render.add_schedule(passes);
 }
 
@@ -56,6 +64,7 @@ pub(super) fn switch_camera(
         PanelCamera,
         PrimaryEguiContext,
         CameraRenderGraph::new(DrawPanels),
+        CameraMainTextureUsages::default().with(TextureUsages::COPY_DST),
         Projection::Orthographic(OrthographicProjection::default_2d()),
         Camera {
             order: ORDER,

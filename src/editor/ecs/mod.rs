@@ -8,6 +8,7 @@ mod manners;
 mod measure;
 mod mesh;
 mod panel_layout;
+mod panel_picture;
 mod panels;
 mod show_ground;
 mod show_species;
@@ -85,7 +86,7 @@ impl Plugin for EditorPlugin {
             .init_resource::<AppliedPlan>()
             .init_resource::<BuiltGround>()
             .init_resource::<Measuring>()
-            .add_plugins((camera::plugin, manners::plugin, panel_layout::plugin))
+            .add_plugins((camera::plugin, manners::plugin, panel_layout::plugin, panel_picture::plugin))
             .add_systems(PreUpdate, scale_panels.run_if(is_open))
             .add_systems(
                 Update,

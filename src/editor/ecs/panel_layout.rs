@@ -2,24 +2,23 @@
 //!
 //! They are laid out when there is input, when egui asks for it (as while something fades in, or where a cursor blinks), when a program has
 //! changed the workbench, when the picture under handles moves, and some times a second for what changes by itself: counts, plots, progress.
-//! In between, what was painted last is painted again.
+//! In between, the picture of what was painted last is shown (`panel_picture.rs`).
 
-use super::{camera::PanelCamera, workbench::Workbench};
+use super::{camera::PanelCamera, panel_picture::PanelsLaidOut, workbench::Workbench};
 use bevy::prelude::*;
 use bevy_egui::{
-    EguiContextSettings, EguiFullOutput, EguiInput, EguiOutput, EguiPostUpdateSet, EguiPreUpdateSet, EguiRenderOutput,
-    egui::{ClippedPrimitive, FullOutput, PlatformOutput, Rect, ViewportId},
+    EguiContextSettings, EguiFullOutput, EguiInput, EguiOutput, EguiPostUpdateSet, EguiPreUpdateSet,
+    egui::{FullOutput, PlatformOutput, Rect, ViewportId},
 };
 use std::time::Duration;
 
-/// What changes by itself is shown so often.
-const REFRESH: Duration = Duration::from_millis(100);
+/// What changes by itself is shown so often: a number that changes faster cannot be read.
+const REFRESH: Duration = Duration::from_millis(200);
 
 /// The layout of the panels.
 #[derive(Resource, Default)]
 struct PanelLayout {
-    /// What was painted last, and what egui told the window then.
-    painted: Vec<ClippedPrimitive>,
+    /// What egui told the window after the last layout.
     told: PlatformOutput,
     /// The clock at the next layout, if nothing else asks for one.
     next: Duration,
@@ -34,10 +33,7 @@ pub(super) fn plugin(app: &mut App) {
         .add_systems(PreUpdate, decide.after(EguiPreUpdateSet::ProcessInput).before(EguiPreUpdateSet::BeginPass))
         .add_systems(
             PostUpdate,
-            (
-                keep_output.after(EguiPostUpdateSet::EndPass).before(EguiPostUpdateSet::ProcessOutput),
-                keep_paint.after(EguiPostUpdateSet::ProcessOutput).before(EguiPostUpdateSet::PostProcessOutput),
-            ),
+            keep_output.after(EguiPostUpdateSet::EndPass).before(EguiPostUpdateSet::ProcessOutput),
         );
 }
 
@@ -68,9 +64,11 @@ fn keep_output(
     time: Res<Time<Real>>,
     workbench: Res<Workbench>,
     mut layout: ResMut<PanelLayout>,
+    mut laid_out: ResMut<PanelsLaidOut>,
     mut panels: Query<(&EguiContextSettings, &EguiOutput, &mut EguiFullOutput), With<PanelCamera>>,
 ) {
     let Ok((settings, known, mut output)) = panels.single_mut() else { return };
+    laid_out.0 = !settings.run_manually;
     if settings.run_manually {
         output.0 = Some(FullOutput {
             platform_output: layout.told.clone(),
@@ -86,24 +84,11 @@ fn keep_output(
     }
 }
 
-/// Keeps what is painted after a layout; without one, has it painted again.
-fn keep_paint(
-    mut layout: ResMut<PanelLayout>,
-    mut panels: Query<(&EguiContextSettings, &mut EguiRenderOutput), With<PanelCamera>>,
-) {
-    let Ok((settings, mut output)) = panels.single_mut() else { return };
-    if settings.run_manually {
-        output.paint_jobs.clone_from(&layout.painted);
-    } else {
-        layout.painted.clone_from(&output.paint_jobs);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use bevy::time::TimeUpdateStrategy;
-    use bevy_egui::egui::{Event, Mesh, Pos2, epaint::Primitive};
+    use bevy_egui::egui::{Event, Pos2};
 
     const FRAME: Duration = Duration::from_millis(10);
 
@@ -111,6 +96,7 @@ mod tests {
     fn app() -> App {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, plugin))
+            .init_resource::<PanelsLaidOut>()
             .insert_resource(TimeUpdateStrategy::ManualDuration(FRAME))
             .insert_resource(Workbench::new(None, None, None, false));
         app.world_mut().resource_mut::<Workbench>().is_open = true;
@@ -120,13 +106,12 @@ mod tests {
             EguiInput::default(),
             EguiOutput::default(),
             EguiFullOutput::default(),
-            EguiRenderOutput::default(),
         ));
         app
     }
 
-    /// A frame, and whether panels were laid out in it. If they were, egui asks to be called again after `delay`, and paints `number` things.
-    fn frame(app: &mut App, delay: Duration, number: usize) -> bool {
+    /// A frame, and whether panels were laid out in it. If they were, egui asks to be called again after `delay`.
+    fn frame(app: &mut App, delay: Duration) -> bool {
         let world = app.world_mut();
         world.run_schedule(First);
         world.run_schedule(PreUpdate);
@@ -140,12 +125,9 @@ mod tests {
             output.0 = Some(laid_out);
         }
         world.run_system_cached(keep_output).expect("it runs");
-        let mut panels = world.query::<(&mut EguiFullOutput, &mut EguiRenderOutput)>();
-        let (mut output, mut painted) = panels.single_mut(world).expect("a camera");
-        output.0.take().expect("there is always something to draw");
-        let job = ClippedPrimitive { clip_rect: Rect::EVERYTHING, primitive: Primitive::Mesh(Mesh::default()) };
-        painted.paint_jobs = vec![job; if is_laid_out { number } else { 0 }];
-        world.run_system_cached(keep_paint).expect("it runs");
+        let output = world.query::<&EguiFullOutput>().single(world).expect("a camera");
+        assert!(output.0.is_some(), "egui always takes something");
+        assert_eq!(world.resource::<PanelsLaidOut>().0, is_laid_out);
         is_laid_out
     }
 
@@ -157,41 +139,31 @@ mod tests {
             .expect("the root")
     }
 
-    fn painted(app: &mut App) -> usize {
-        let world = app.world_mut();
-        world.query::<&EguiRenderOutput>().single(world).expect("a camera").paint_jobs.len()
-    }
-
     fn layouts(app: &mut App, frames: usize) -> usize {
-        (0..frames).filter(|_| frame(app, Duration::MAX, 3)).count()
+        (0..frames).filter(|_| frame(app, Duration::MAX)).count()
     }
 
     #[test]
-    fn panels_are_laid_out_ten_times_a_second_and_painted_in_every_frame() {
+    fn panels_are_laid_out_five_times_a_second() {
         let mut app = app();
-        assert!(frame(&mut app, Duration::MAX, 3));
-        let mut count = 0;
-        for _ in 0..200 {
-            count += usize::from(frame(&mut app, Duration::MAX, 3));
-            assert_eq!(painted(&mut app), 3);
-        }
-        assert_eq!(count, 20);
+        assert!(frame(&mut app, Duration::MAX));
+        assert_eq!(layouts(&mut app, 200), 10);
     }
 
     #[test]
     fn input_and_what_egui_asks_for_and_a_changed_workbench_are_not_waited_for() {
         let mut app = app();
         layouts(&mut app, 5);
-        assert!(!frame(&mut app, Duration::MAX, 3));
+        assert!(!frame(&mut app, Duration::MAX));
         let world = app.world_mut();
         let mut inputs = world.query::<&mut EguiInput>();
         inputs.single_mut(world).expect("a camera").events.push(Event::PointerMoved(Pos2::ZERO));
         // Asks at once, and then after 30 ms.
-        assert!(frame(&mut app, Duration::ZERO, 3) && frame(&mut app, 3 * FRAME, 3));
-        assert_eq!([(); 3].map(|()| frame(&mut app, Duration::MAX, 3)), [false, false, true]);
-        assert!(!frame(&mut app, Duration::MAX, 3));
+        assert!(frame(&mut app, Duration::ZERO) && frame(&mut app, 3 * FRAME));
+        assert_eq!([(); 3].map(|()| frame(&mut app, Duration::MAX)), [false, false, true]);
+        assert!(!frame(&mut app, Duration::MAX));
         app.world_mut().resource_mut::<Workbench>().panel = crate::editor::ui::Panel::Wind;
-        assert!(frame(&mut app, Duration::MAX, 3));
+        assert!(frame(&mut app, Duration::MAX));
     }
 
     #[test]
@@ -200,8 +172,8 @@ mod tests {
         layouts(&mut app, 5);
         app.world_mut().resource_mut::<Workbench>().is_open = false;
         // Now they are gone.
-        assert!(frame(&mut app, Duration::MAX, 0));
-        assert_eq!((layouts(&mut app, 100), painted(&mut app)), (0, 0));
+        assert!(frame(&mut app, Duration::MAX));
+        assert_eq!(layouts(&mut app, 100), 0);
         let world = app.world_mut();
         let mut inputs = world.query::<&mut EguiInput>();
         inputs.single_mut(world).expect("a camera").events.push(Event::PointerGone);

@@ -136,7 +136,7 @@ pub(super) fn bake_impostor_species(
         // Without storage buffers not even the layout of their material can be made.
         return;
     }
-    library.compresses_textures = capabilities.reads_compressed_textures;
+    library.compresses_textures = capabilities.compresses_textures;
     for id in library.set(detail.0.bake.impostor) {
         if let Some(species) = species.get(id).filter(|species| species.validate().is_ok()) {
             library.bake(id, species);

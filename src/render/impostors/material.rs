@@ -220,9 +220,6 @@ impl MaterialExtension for ImpostorExtension {
         key: MaterialExtensionKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
         let attributes = [Mesh::ATTRIBUTE_POSITION.at_shader_location(0), ATTRIBUTE_IMPOSTOR.at_shader_location(8)];
-        // Coordinates and colour carry the place on the tree and the direction to the view to the fragments.
-        let mut flags = vec!["VERTEX_UVS_A", "VERTEX_UVS_B", "VERTEX_COLORS", "VISIBILITY_RANGE_DITHER"];
-        flags.extend(key.bind_group_data.flags());
         let constants = [
             ("MAX_IMPOSTOR_VARIANTS", MAX_VARIANTS),
             ("MAX_IMPOSTOR_SIZE", MAX_SIZE),
@@ -232,6 +229,6 @@ impl MaterialExtension for ImpostorExtension {
         set_constants(descriptor, &constants);
         shade_what_is_seen(descriptor, key.mesh_key);
         tell_of_sun_shadow(descriptor, key.mesh_key);
-        specialize(descriptor, layout, &attributes, &flags)
+        specialize(descriptor, layout, &attributes, key.bind_group_data.flags())
     }
 }

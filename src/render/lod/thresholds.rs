@@ -104,13 +104,17 @@ impl LodThresholds {
         before: Option<LodSelection>,
     ) -> LodSelection {
         let selection = self.select(distance.scaled_m, height_m, count, before);
-        let margin = if before.is_some_and(|before| before.is_impostor) { -self.margin } else { 0.0 };
-        let is_beyond =
-            |distance_m: f32, end_m: f32| distance_m > (end_m * (1.0 + self.fade) + slack_m(end_m)) * (1.0 + margin);
+        // A tree goes later than it comes back, and it is back before its impostor begins to fade.
+        let margin_of = |is_drawn: bool| if is_drawn { self.margin } else { 0.0 };
+        let is_beyond = |distance_m: f32, end_m: f32, margin: f32| {
+            distance_m > (end_m * (1.0 + self.fade) + slack_m(end_m)) * (1.0 + margin)
+        };
         let lagging_m = impostor_height_m * FADE_LAG;
-        let is_impostor = is_beyond(distance.m, from_m * FADE_LAG)
-            || is_beyond(distance.scaled_m, self.ends[MOST_LEVELS - 1] * lagging_m);
-        let is_shadow_impostor = is_beyond(distance.scaled_m, self.caster_end * lagging_m);
+        let margin = margin_of(before.is_some_and(|before| !before.is_impostor));
+        let is_impostor = is_beyond(distance.m, from_m * FADE_LAG, margin)
+            || is_beyond(distance.scaled_m, self.ends[MOST_LEVELS - 1] * lagging_m, margin);
+        let margin = margin_of(before.is_some_and(|before| !before.is_shadow_impostor));
+        let is_shadow_impostor = is_beyond(distance.scaled_m, self.caster_end * lagging_m, margin);
         LodSelection { is_impostor, is_shadow_impostor, ..selection }
     }
 
@@ -201,6 +205,13 @@ mod tests {
         assert!(!is_impostor(200.0 * (1.0 + thresholds.fade), None) && is_impostor(230.0, None));
         let before = LodSelection { lod: 2, is_impostor: true, ..default() };
         assert!(is_impostor(220.0, Some(before)) && !is_impostor(200.0, Some(before)));
+        // Where an impostor begins to fade, its tree is back.
+        assert!(!is_impostor(200.0 * (1.0 + thresholds.fade) * FADE_LAG, Some(before)));
+        let drawn = LodSelection { lod: 2, ..default() };
+        assert!(
+            !is_impostor(220.0, Some(drawn)) && is_impostor(230.0, Some(drawn)),
+            "it goes later than it comes back"
+        );
         assert!(!thresholds.select(1e6, 20.0, 3, None).is_impostor);
     }
 

@@ -86,7 +86,7 @@ pub(crate) fn start_preparing_species(
         species: entry.species.clone(),
         style: *style,
         bake: bake.clone(),
-        compresses_textures: capabilities.is_some_and(|it| it.reads_compressed_textures),
+        compresses_textures: capabilities.is_some_and(|it| it.compresses_textures),
     });
     let variants: Vec<TreeModel> = stage.models.iter().filter_map(|model| models.get(model).cloned()).collect();
     running.retain(|other| (other.species, other.age_step) != (id, age_step));

@@ -71,10 +71,11 @@ fn shoots(leaf: &Leaf, random: &mut Xoshiro256PlusPlus) -> Vec<Shoot> {
         let share = (index as f32 + random.random_range(0.3..0.7)) / leaf.shoots as f32;
         let root = Vec2::new(0.06 + 0.78 * share, 0.0);
         let side = if index % 2 == 0 { 1.0 } else { -1.0 };
-        let angle = SHOOT_ANGLE_RAD * random.random_range(0.85..1.1);
+        let angle = SHOOT_ANGLE_RAD * random.random_range(0.75..1.2);
         let direction = Vec2::new(angle.cos(), side * angle.sin());
         let room = (room(root, direction) - 0.85 * leaf.length).max(0.25 * leaf.length);
-        let length = room * random.random_range(0.7..1.0);
+        // So unequal that what a spray ends in are its shoots, not the straight edges of its card.
+        let length = room * random.random_range(0.6..1.0);
         shoots.push(Shoot { root, tip: root + direction * length, radius: 0.0035 });
     }
     shoots

@@ -5,7 +5,7 @@ mod contact_sheet;
 mod scene;
 
 use crate::report::Report;
-use bevy_windwood::tree::Season;
+use bevy_windwood::{prelude::LevelOfDetail, tree::Season};
 use contact_sheet::ContactSheet;
 use image::RgbImage;
 use scene::{Shot, TestScene};
@@ -17,10 +17,11 @@ const SPECIES: [&str; 8] =
 /// Species whose crowns are a few large parts on a stiff frame. They hardly move from frame to frame, so an abrupt change is large
 /// beside their motion: except for the fade, their numbers are reported apart.
 const COARSE_CROWNS: [&str; 2] = ["billows", "impression_summer"];
-/// Points of a fade at which one frame of it is compared with the wind, as shares of its length.
-const FADE_POINTS: [f32; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
-/// A step of the dither, as a share of the distance: the fade has 1024 and takes a fifth of the distance.
-const DITHER_STEP: f32 = 0.2 / 1024.0;
+/// Points of a fade at which one frame of it is compared with the wind, as shares of its length. They reach beyond it, for an impostor goes
+/// by the height of its atlas, which is not quite the tree's.
+const FADE_POINTS: [f32; 11] = [-0.7, -0.4, -0.1, 0.1, 0.3, 0.5, 0.7, 0.9, 1.1, 1.4, 1.7];
+/// Steps of the dither.
+const DITHER_STEPS: f32 = 1024.0;
 /// Way of a walker in a frame, m: 1.5 m/s at 60 frames/s.
 const STEP_M: f32 = 0.025;
 
@@ -119,11 +120,12 @@ fn measure_level(scene: &mut TestScene, change: usize, sheet: &mut ContactSheet)
     sheet.add(&full, scene.crop());
     sheet.add(&coarser, scene.crop());
     let wind = difference(&full, &later);
+    let fade = LevelOfDetail::default().fade;
     // A frame changes at least one step of the dither.
-    let step = DITHER_STEP.max(STEP_M / scene.distance_m());
+    let step = (2.0 * fade / DITHER_STEPS).max(STEP_M / scene.distance_m());
     let mut pop = 0.0_f64;
     for point in FADE_POINTS {
-        let at = 0.9 + 0.2 * point;
+        let at = 1.0 - fade + 2.0 * fade * point;
         let [before, after] = [at, at + step].map(|share| scene.render(Shot::Fading(change, share)));
         pop = pop.max(difference(&before, &after) / wind);
     }
