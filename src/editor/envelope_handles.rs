@@ -44,7 +44,7 @@ pub fn outline(envelope: &Envelope, side: Vec3) -> Vec<Vec3> {
 pub fn handles(envelope: &Envelope, side: Vec3) -> [(EnvelopeHandle, Vec3); 3] {
     let widest_m = match envelope.shape {
         EnvelopeShape::Ellipsoid | EnvelopeShape::Cylinder => 0.5 * (envelope.base_m + envelope.top_m),
-        EnvelopeShape::Cone | EnvelopeShape::Dome => envelope.base_m,
+        EnvelopeShape::Cone | EnvelopeShape::Paraboloid | EnvelopeShape::Dome => envelope.base_m,
         EnvelopeShape::InvertedCone => envelope.top_m,
     };
     [
@@ -85,6 +85,7 @@ mod tests {
         for shape in [
             EnvelopeShape::Ellipsoid,
             EnvelopeShape::Cone,
+            EnvelopeShape::Paraboloid,
             EnvelopeShape::Cylinder,
             EnvelopeShape::Dome,
             EnvelopeShape::InvertedCone,

@@ -18,6 +18,8 @@ pub struct LevelOfDetail {
     pub screen_sizes: LodScreenSizes,
     /// Over this share of a distance, to either side, one level fades into the next. domain: \[0.02, 0.3\].
     pub fade: f32,
+    /// The same between a tree's last level and its impostor, which differ by more than two levels do. domain: \[0.02, 0.3\].
+    pub impostor_fade: f32,
     /// Beyond so many of a tree's heights its impostor casts its shadow in the maps of suns, where it has one. Masked leaves in shadow maps
     /// are what a forest costs most. domain: \[0.5, 1000\].
     pub shadow_impostors_from_heights: f32,
@@ -46,6 +48,7 @@ impl Default for LevelOfDetail {
             style: LevelStyle::default(),
             screen_sizes: LodScreenSizes::default(),
             fade: 0.05,
+            impostor_fade: 0.1,
             shadow_impostors_from_heights: 1.0,
             changes_per_frame: 128,
             bake: LodBakeSettings::default(),
@@ -61,6 +64,7 @@ impl LevelOfDetail {
     pub fn validate(&self) -> Result<(), SettingError> {
         self.screen_sizes.validate().map_err(|error| error.inside("screen_sizes"))?;
         require("fade", self.fade, 0.02..=0.3)?;
+        require("impostor_fade", self.impostor_fade, 0.02..=0.3)?;
         require("shadow_impostors_from_heights", self.shadow_impostors_from_heights, 0.5..=1000.0)?;
         require("changes_per_frame", self.changes_per_frame as f32, 1.0..=1e6)?;
         self.bake.validate().map_err(|error| error.inside("bake"))

@@ -20,8 +20,8 @@ use super::{
     vertices::LeafVertices,
 };
 
-/// Where the kite is widest, as a share of its length.
-const WIDEST_AT: f32 = 0.5;
+/// Where the kite is widest, as a share of its length: beyond its middle, for cards that end in a point are thorns on a crown's outline.
+pub(super) const WIDEST_AT: f32 = 0.58;
 /// Shares of the normal: the card's own, its clump's outside, the crown's outside.
 const NORMAL_SHARES: [f32; 3] = [0.45, 0.75, 0.5];
 /// The order of branches whose foliage makes a clump.
@@ -119,51 +119,58 @@ struct Kite {
     normal: Vec3,
     /// From root to tip in a straight line, m.
     length_m: f32,
+    /// From its root to where it is widest, along that line.
+    widest_m: f32,
     half_width_m: f32,
-    /// Height of the middle above that line, m, and how far normals lean to both ends for it.
+    /// Height of its widest place above that line, m, and how far normals lean to root and tip for it.
     rise_m: f32,
-    lean: f32,
+    leans: [f32; 2],
     fold_rad: f32,
 }
 
 impl Kite {
     fn of(foliage: &Foliage, cluster: &LeafCluster) -> Self {
-        // The two halves keep their lengths when they bend.
-        let bend_rad = if foliage.card == Card::Bent { 0.5 * foliage.bend_deg.to_radians() } else { 0.0 };
+        // Both parts keep their lengths when they bend.
+        let bend_rad = if foliage.card == Card::Bent { foliage.bend_deg.to_radians() } else { 0.0 };
+        let [inner, outer] = [WIDEST_AT, 1.0 - WIDEST_AT];
+        let up_rad = (outer * bend_rad.sin()).atan2(inner + outer * bend_rad.cos());
+        let down_rad = bend_rad - up_rad;
         let fold_deg = if foliage.card == Card::Flat { 0.0 } else { foliage.fold_deg };
         Self {
             anchor: cluster.anchor,
             axis: cluster.axis,
             side: cluster.axis.cross(cluster.normal),
             normal: cluster.normal,
-            length_m: cluster.size_m * bend_rad.cos(),
+            length_m: cluster.size_m * (inner * up_rad.cos() + outer * down_rad.cos()),
+            widest_m: inner * cluster.size_m * up_rad.cos(),
             half_width_m: 0.5 * foliage.aspect * cluster.size_m,
-            rise_m: WIDEST_AT * cluster.size_m * bend_rad.sin(),
-            lean: bend_rad.sin(),
+            rise_m: inner * cluster.size_m * up_rad.sin(),
+            leans: [up_rad.sin(), down_rad.sin()],
             fold_rad: fold_deg.to_radians(),
         }
     }
 
-    fn middle(&self) -> Vec3 {
-        self.anchor + self.axis * (WIDEST_AT * self.length_m) + self.normal * self.rise_m
+    fn widest(&self) -> Vec3 {
+        self.anchor + self.axis * self.widest_m + self.normal * self.rise_m
     }
 
     /// Root, left, tip, right.
     fn corners(&self) -> [Corner; 4] {
         let (fold_sin, fold_cos) = self.fold_rad.sin_cos();
         let out = self.side * (fold_cos * self.half_width_m);
-        let low = self.middle() - self.normal * (fold_sin * self.half_width_m);
-        let (normal, lean, fold) = (self.normal, self.axis * self.lean, self.side * fold_sin);
+        let low = self.widest() - self.normal * (fold_sin * self.half_width_m);
+        let (normal, fold) = (self.normal, self.side * fold_sin);
+        let [to_root, to_tip] = self.leans.map(|lean| self.axis * lean);
         [
-            Corner { position: self.anchor, normal: normal - lean, uv: [0.0, 1.0] },
+            Corner { position: self.anchor, normal: normal - to_root, uv: [0.0, 1.0] },
             Corner { position: low - out, normal: normal - fold, uv: [0.0, 0.0] },
-            Corner { position: self.anchor + self.axis * self.length_m, normal: normal + lean, uv: [1.0, 0.0] },
+            Corner { position: self.anchor + self.axis * self.length_m, normal: normal + to_tip, uv: [1.0, 0.0] },
             Corner { position: low + out, normal: normal + fold, uv: [1.0, 1.0] },
         ]
     }
 
     fn centre(&self) -> Corner {
-        Corner { position: self.middle(), normal: self.normal, uv: [0.5, 0.5] }
+        Corner { position: self.widest(), normal: self.normal, uv: [0.5, 0.5] }
     }
 
     /// The kite through the same axis at right angles.

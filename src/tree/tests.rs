@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 use self::strategies::{species, structures, zaharias_fir, zaharias_oak};
 use super::{
-    foliage::CLUSTERS_LIMIT,
+    foliage::{CLUSTERS_LIMIT, Card},
     generator::Growth,
     growth::{
         BEAMS_LIMIT,
@@ -246,11 +246,13 @@ fn shipped_trees_have_realistic_sizes_and_few_enough_vertices() {
 
 #[test]
 fn a_leaf_card_starts_at_its_anchor_and_runs_along_its_axis() {
-    let species = fir();
+    let mut species = fir();
+    (species.foliage.card, species.foliage.bend_deg) = (Card::Bent, 40.0);
     let skeleton = grow(&species, species.age.mature_years, 5);
     let leaves = leaves(&species, &skeleton);
     let stride = species.foliage.card.vertices();
-    let bent = (0.5 * species.foliage.bend_deg.to_radians()).cos();
+    // Both parts keep their lengths, 0.58 and 0.42 of the spray's (law of cosines).
+    let bent = (0.58_f32.powi(2) + 0.42_f32.powi(2) + 2.0 * 0.58 * 0.42 * 40.0_f32.to_radians().cos()).sqrt();
     for (card, cluster) in skeleton.clusters.iter().enumerate() {
         let [root, tip] = [stride * card, stride * card + 2].map(|index| Vec3::from(leaves.positions[index]));
         let along = (tip - root).normalize();

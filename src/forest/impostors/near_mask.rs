@@ -7,9 +7,9 @@ use crate::{
 };
 use bevy::prelude::*;
 
-/// Trees give way to impostors at this share, at the latest, of the distance to which all of them stand as entities: the fade must end
-/// before it.
-const TREES_END_AT: f32 = 0.88;
+/// The fade from trees to impostors ends at this share, at the latest, of the distance to which all trees stand as entities: no less than
+/// [`FADE_LAG`](crate::render::lod::thresholds::FADE_LAG) before it.
+const FADE_ENDS_AT: f32 = 0.97;
 
 /// Writes where that has changed: forest by forest, since each has cells and distances of its own.
 pub(super) fn update_near_masks(
@@ -20,11 +20,12 @@ pub(super) fn update_near_masks(
     mut viewers: ResMut<LodViewers>,
     mut forests: Query<(&mut ForestCells, Option<&mut ForestImpostors>)>,
 ) {
+    let fade = viewers.thresholds.impostor_fade;
     for (mut forest, mut tiles) in &mut forests {
         let settings = forest.settings();
         // Trees do not fade before there is something to stand for them.
         let from_m = match &tiles {
-            Some(tiles) if tiles.is_complete() => Some(TREES_END_AT * settings.trees_to_m),
+            Some(tiles) if tiles.is_complete() => Some(FADE_ENDS_AT * settings.trees_to_m / (1.0 + fade)),
             Some(_) => forest.impostors_from_m,
             None => None,
         };

@@ -5,7 +5,7 @@ use bevy::{asset::RenderAssetUsages, prelude::*, render::storage::ShaderBuffer};
 /// Size of a buffer before its first upload, bytes.
 const FIRST_BYTES: u64 = 256;
 /// Size of the values of a frame, bytes.
-pub(crate) const FRAME_BYTES: u64 = 10_992;
+pub(crate) const FRAME_BYTES: u64 = 11_008;
 
 /// The tables of all trees that sway and of the wind, for shaders of your own.
 ///

@@ -256,6 +256,7 @@ fn frame_row(
         year: season.wrapped(),
         lod_ends: viewers.thresholds.ends,
         fade: viewers.thresholds.fade,
+        impostor_fade: viewers.thresholds.impostor_fade,
         fade_lag: FADE_LAG,
         viewer_count: 0,
         shadow_end: viewers.thresholds.shadow_end,

@@ -104,6 +104,8 @@ pub(crate) struct FrameRow {
     pub lod_ends: [f32; 3],
     /// Levels fade over this share of a distance, to either side.
     pub fade: f32,
+    /// The same between a tree and its impostor.
+    pub impostor_fade: f32,
     /// Trees fade so much later than their impostors come, as a factor of the distance.
     pub fade_lag: f32,
     /// Of `viewers`, those that are set.
@@ -117,6 +119,8 @@ pub(crate) struct FrameRow {
     pub source_counts: [u32; 2],
     pub pusher_counts: [u32; 2],
     pub trail_counts: [u32; 2],
+    /// `viewers` begins at a multiple of 16 bytes.
+    pub padding: [u32; 3],
     /// The cameras: place, and the factor of [`LodViewer::factor`](crate::render::lod::viewers::LodViewer::factor).
     pub viewers: [[f32; 4]; MAX_VIEWERS],
     /// What a game blows and pushes: rows of now, then those of one frame ago.

@@ -49,6 +49,7 @@ pub(crate) struct LodThresholds {
     /// Of each level, per metre of the tree's height; the last has no end, unless an impostor follows it.
     pub ends: [f32; MOST_LEVELS],
     pub fade: f32,
+    pub impostor_fade: f32,
     /// From here on impostors cast the shadows of trees in the maps of suns, per metre of their height.
     pub shadow_end: f32,
     /// From here on trees with an impostor cast no shadow themselves, per metre of their height.
@@ -69,7 +70,14 @@ impl LodThresholds {
             LevelStyle::Paper | LevelStyle::Full => NEVER_M,
         };
         let margin = settings.screen_sizes.margin;
-        Self { ends, fade: settings.fade, shadow_end, caster_end: shadow_end, margin }
+        Self {
+            ends,
+            fade: settings.fade,
+            impostor_fade: settings.impostor_fade,
+            shadow_end,
+            caster_end: shadow_end,
+            margin,
+        }
     }
 
     /// The same where lamps have shadow maps, in which impostors stand for no tree.
@@ -106,15 +114,15 @@ impl LodThresholds {
         let selection = self.select(distance.scaled_m, height_m, count, before);
         // A tree goes later than it comes back, and it is back before its impostor begins to fade.
         let margin_of = |is_drawn: bool| if is_drawn { self.margin } else { 0.0 };
-        let is_beyond = |distance_m: f32, end_m: f32, margin: f32| {
-            distance_m > (end_m * (1.0 + self.fade) + slack_m(end_m)) * (1.0 + margin)
+        let is_beyond = |distance_m: f32, end_m: f32, fade: f32, margin: f32| {
+            distance_m > (end_m * (1.0 + fade) + slack_m(end_m)) * (1.0 + margin)
         };
         let lagging_m = impostor_height_m * FADE_LAG;
         let margin = margin_of(before.is_some_and(|before| !before.is_impostor));
-        let is_impostor = is_beyond(distance.m, from_m * FADE_LAG, margin)
-            || is_beyond(distance.scaled_m, self.ends[MOST_LEVELS - 1] * lagging_m, margin);
+        let is_impostor = is_beyond(distance.m, from_m * FADE_LAG, self.impostor_fade, margin)
+            || is_beyond(distance.scaled_m, self.ends[MOST_LEVELS - 1] * lagging_m, self.impostor_fade, margin);
         let margin = margin_of(before.is_some_and(|before| !before.is_shadow_impostor));
-        let is_shadow_impostor = is_beyond(distance.scaled_m, self.caster_end * lagging_m, margin);
+        let is_shadow_impostor = is_beyond(distance.scaled_m, self.caster_end * lagging_m, self.fade, margin);
         LodSelection { is_impostor, is_shadow_impostor, ..selection }
     }
 
@@ -201,15 +209,17 @@ mod tests {
             let distance = LodDistance { m, scaled_m: m };
             thresholds.select_before_impostor(distance, 20.0, 3, (IMPOSTOR_FROM_M, 20.0), before).is_impostor
         };
-        // Impostors begin at 200 m, and are complete there.
-        assert!(!is_impostor(200.0 * (1.0 + thresholds.fade), None) && is_impostor(230.0, None));
+        // Here the tree is all gone, and a little farther it is dropped.
+        let faded_m = IMPOSTOR_FROM_M * (1.0 + thresholds.impostor_fade) * FADE_LAG;
+        let dropped_m = faded_m + 1.01 * slack_m(faded_m);
+        assert!(!is_impostor(faded_m, None) && is_impostor(dropped_m, None));
         let before = LodSelection { lod: 2, is_impostor: true, ..default() };
-        assert!(is_impostor(220.0, Some(before)) && !is_impostor(200.0, Some(before)));
+        assert!(is_impostor(dropped_m, Some(before)));
         // Where an impostor begins to fade, its tree is back.
-        assert!(!is_impostor(200.0 * (1.0 + thresholds.fade) * FADE_LAG, Some(before)));
+        assert!(!is_impostor(faded_m, Some(before)));
         let drawn = LodSelection { lod: 2, ..default() };
         assert!(
-            !is_impostor(220.0, Some(drawn)) && is_impostor(230.0, Some(drawn)),
+            !is_impostor(dropped_m, Some(drawn)) && is_impostor(1.05 * dropped_m, Some(drawn)),
             "it goes later than it comes back"
         );
         assert!(!thresholds.select(1e6, 20.0, 3, None).is_impostor);

@@ -130,12 +130,15 @@ impl<'a> Pattern<'a> {
         }
     }
 
-    /// Flat plates of many thin flakes, with sharp cracks between.
+    /// Flat plates of many thin flakes, with sharp cracks between, which gape here and are nearly closed there.
     fn plates(&self, uv: Vec2, warp: Vec2, fine: f32, grain: f32) -> Point {
         let bark = self.bark;
         let warp = warp * bark.winding + Vec2::new(0.10 * fine, 0.10 * fine) + 0.04 * grain;
         let cell = self.cells.at(uv, warp);
-        let face = cell.edge.smoothstep(0.0, bark.furrow_width);
+        let openness = (0.5 + 0.9 * self.patches[1].at(uv) + 0.6 * fine).clamp(0.1, 1.2);
+        let width = bark.furrow_width * (0.4 + 0.9 * openness);
+        let closed = (cell.edge + 0.15 * grain * bark.roughness).smoothstep(0.0, width);
+        let face = 1.0 - (0.2 + 0.8 * openness.min(1.0)) * (1.0 - closed);
         let flake = self.flakes.at(uv, warp * 3.0 + 0.15 * grain);
         let level = unit(flake.hash >> 9);
         // Flakes come off from a plate's rim inward: the middle is the oldest, and highest.
@@ -151,12 +154,15 @@ impl<'a> Pattern<'a> {
         }
     }
 
-    /// Long strips, each lifted at one edge.
+    /// Long strips, each lifted at one edge, and grown together here and there.
     fn strips(&self, uv: Vec2, warp: Vec2, fine: f32, grain: f32) -> Point {
         let bark = self.bark;
         let warp = warp * bark.winding + Vec2::new(0.14 * fine + 0.06 * grain, 0.5 * fine);
         let cell = self.cells.at(uv, warp);
-        let face = (cell.edge + 0.06 * grain).smoothstep(0.0, bark.furrow_width);
+        let openness = (0.55 + 0.9 * self.patches[1].at(uv) + 0.5 * fine).clamp(0.1, 1.2);
+        let width = bark.furrow_width * (0.4 + 0.9 * openness);
+        let closed = (cell.edge + 0.06 * grain).smoothstep(0.0, width);
+        let face = 1.0 - (0.2 + 0.8 * openness.min(1.0)) * (1.0 - closed);
         let lifted = (0.5 + 0.55 * cell.from.x).clamp(0.0, 1.0);
         let ends = cell.from.y.abs().smoothstep(0.1, 0.6);
         let tone = unit(cell.hash >> 8);
@@ -205,11 +211,11 @@ impl<'a> Pattern<'a> {
         let fold = wrinkle.smoothstep(0.75, 1.0) * (warp.y + 0.5 * fine).smoothstep(0.0, 0.5);
         let spot = self.spots.at(uv, 0.18 * Vec2::new(fine, warp.x) + 0.06 * grain);
         let radius = 0.15 + 0.42 * unit(spot.hash >> 6);
-        let crust = (spot.from.length() + 0.10 * grain).smoothstep(radius, radius - 0.09);
+        let crust = (spot.from.length() + 0.16 * grain + 0.12 * fine).smoothstep(radius, radius - 0.2);
         let lichen = crust * f32::from(u8::from(unit(spot.hash) < bark.lichen));
         Point {
             height: 0.5 + 0.12 * warp.x - 0.10 * fold + 0.05 * lichen + bark.roughness * 0.06 * grain,
-            face: 1.0 - 0.55 * fold,
+            face: 1.0 - 0.35 * fold,
             accent: (self.patches[0].at(uv) + 0.4 * fine).smoothstep(0.0, 0.8),
             lichen: lichen * (0.75 + 0.25 * grain),
             tone: 0.92 + 0.12 * warp.y + 0.10 * grain,

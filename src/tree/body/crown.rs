@@ -16,8 +16,8 @@ use super::{
 use crate::{
     dynamics::beam_pose::BeamPose,
     tree::{
-        foliage::Foliage, generator::Growth, leaf::LeafKind, leaf::card_cover, skeleton::Skeleton, species::Species,
-        vertices::LeafVertices,
+        foliage::Foliage, generator::Growth, leaf::LeafKind, leaf::card_cover, leaf_mesh::WIDEST_AT,
+        skeleton::Skeleton, species::Species, vertices::LeafVertices,
     },
 };
 use bevy::math::{IVec2, Vec2, Vec3, Vec3Swizzles};
@@ -255,7 +255,7 @@ fn cover(species: &Species) -> f32 {
         Growth::ReevesBlau(_) | Growth::Oak(_) | Growth::Fir(_) | Growth::AonoKunii(_) => {
             let Foliage { kind, leaf, .. } = &species.foliage;
             match kind {
-                LeafKind::Sprays => card_cover(leaf, species.seed),
+                LeafKind::Sprays => card_cover(leaf, species.seed, WIDEST_AT),
                 LeafKind::Ellipsoids(_) => CLOSED,
             }
         }

@@ -1,18 +1,19 @@
 //! The envelope of a crown: a solid of revolution about the trunk that branches do not leave.
 //!
-//! Reeves & Blau (1985, section 3.1) bound their trees by an ellipsoid or a cone; a column, a dome and a vase are added
-//! for the habits of poplars, pines and shrubs. All are one quadric between two heights: with a point's coordinates
+//! Reeves & Blau (1985, section 3.1) bound their trees by an ellipsoid or a cone; a column, a dome, a vase and a paraboloid are
+//! added for the habits of poplars, pines, shrubs and firs. All are one quadric between two heights: with a point's coordinates
 //! `x, z` in units of the radius and `y` in units of the height from the place given in the table,
 //!
 //! ```text
-//! x^2 + z^2 + k y^2 <= m,   base <= height <= top
+//! x^2 + z^2 + k y^2 + l y <= m,   base <= height <= top
 //!
-//! shape           k   m   y = 0       unit of y
-//! ellipsoid       1   1   the middle  half the height
-//! dome            1   1   the base    the height
-//! cylinder        0   1   the middle  half the height
-//! cone           -1   0   the top     the height
-//! inverted cone  -1   0   the base    the height
+//! shape           k   l   m   y = 0       unit of y
+//! ellipsoid       1   0   1   the middle  half the height
+//! dome            1   0   1   the base    the height
+//! cylinder        0   0   1   the middle  half the height
+//! cone           -1   0   0   the top     the height
+//! paraboloid      0   1   0   the top     the height
+//! inverted cone  -1   0   0   the base    the height
 //! ```
 //!
 //! Every one is convex, so that a ray leaves it once. The same distance from the surface shades the crown (their
@@ -45,6 +46,8 @@ pub enum EnvelopeShape {
     Ellipsoid,
     /// A conifer's, its apex on top.
     Cone,
+    /// A fuller conifer's, blunt on top: half way up it has 0.71 of the radius, where a cone has 0.5.
+    Paraboloid,
     /// A column: a lombardy poplar's.
     Cylinder,
     /// The upper half of an ellipsoid, flat below: the umbrella of an old pine.
@@ -97,10 +100,10 @@ impl Envelope {
     pub fn exit_distance_m(&self, from: Vec3, direction: Vec3) -> f32 {
         let quadric = self.quadric();
         let (p, d) = (quadric.local(from), direction / quadric.unit);
-        // x^2 + z^2 + k y^2 - m along the ray: a t^2 + 2 b t + c.
+        // x^2 + z^2 + k y^2 + l y - m along the ray: a t^2 + 2 b t + c.
         let a = d.x * d.x + d.z * d.z + quadric.k * d.y * d.y;
-        let b = p.x * d.x + p.z * d.z + quadric.k * p.y * d.y;
-        let c = p.x * p.x + p.z * p.z + quadric.k * p.y * p.y - quadric.m;
+        let b = p.x * d.x + p.z * d.z + quadric.k * p.y * d.y + 0.5 * quadric.l * d.y;
+        let c = p.x * p.x + p.z * p.z + quadric.k * p.y * p.y + quadric.l * p.y - quadric.m;
         let between = slab(from.y, direction.y, self.base_m, self.top_m);
         let pieces = below_zero(a, b, c).map(|piece| meet(piece, between));
         // Of the two nappes of a cone one lies between the heights, and the other touches it in the apex at most.
@@ -108,7 +111,8 @@ impl Envelope {
         if length(longest) < 0.0 { 0.0 } else { longest.1.max(0.0) }
     }
 
-    /// How deep a point is in the crown: 0 at the surface and outside, 1 in the middle or on the axis. Below a cone it is 1.
+    /// How deep a point is in the crown: 0 at the surface and outside, 1 in the middle or on the axis. Below a cone or a paraboloid it
+    /// is 1.
     #[must_use]
     pub fn depth(&self, point: Vec3) -> f32 {
         let quadric = self.quadric();
@@ -117,8 +121,9 @@ impl Envelope {
         let outwards = match self.shape {
             EnvelopeShape::Ellipsoid => local.length(),
             EnvelopeShape::Dome if local.y >= 0.0 => local.length(),
-            EnvelopeShape::Cone if point.y < self.base_m => 0.0,
+            EnvelopeShape::Cone | EnvelopeShape::Paraboloid if point.y < self.base_m => 0.0,
             EnvelopeShape::Cone => across / (-local.y).max(1e-4),
+            EnvelopeShape::Paraboloid => across / (-local.y).max(1e-8).sqrt(),
             EnvelopeShape::Cylinder => across.max(local.y.abs()),
             // The light falls in from above.
             EnvelopeShape::InvertedCone if local.y > 0.0 => (across / local.y.max(1e-4)).max(local.y),
@@ -139,6 +144,7 @@ impl Envelope {
             EnvelopeShape::Cone => {
                 Vec3::new(point.x, 0.0, point.z).normalize_or_zero() + Vec3::Y * (self.radius_m / quadric.unit.y)
             }
+            EnvelopeShape::Paraboloid => Vec3::new(2.0 * local.x, 1.0, 2.0 * local.z) / quadric.unit,
             EnvelopeShape::InvertedCone => Vec3::new(point.x, (point.y - self.base_m).max(0.0), point.z),
         };
         gradient.try_normalize().unwrap_or(Vec3::Y)
@@ -152,7 +158,7 @@ impl Envelope {
         }
         let quadric = self.quadric();
         let y = (height_m - quadric.origin_m) / quadric.unit.y;
-        self.radius_m * (quadric.m - quadric.k * y * y).max(0.0).sqrt()
+        self.radius_m * (quadric.m - quadric.k * y * y - quadric.l * y).max(0.0).sqrt()
     }
 
     /// Middle of the crown, m.
@@ -164,20 +170,22 @@ impl Envelope {
     fn quadric(&self) -> Quadric {
         let height_m = self.top_m - self.base_m;
         let middle_m = 0.5 * (self.base_m + self.top_m);
-        let (k, m, origin_m, unit_m) = match self.shape {
-            EnvelopeShape::Ellipsoid => (1.0, 1.0, middle_m, 0.5 * height_m),
-            EnvelopeShape::Dome => (1.0, 1.0, self.base_m, height_m),
-            EnvelopeShape::Cylinder => (0.0, 1.0, middle_m, 0.5 * height_m),
-            EnvelopeShape::Cone => (-1.0, 0.0, self.top_m, height_m),
-            EnvelopeShape::InvertedCone => (-1.0, 0.0, self.base_m, height_m),
+        let (k, l, m, origin_m, unit_m) = match self.shape {
+            EnvelopeShape::Ellipsoid => (1.0, 0.0, 1.0, middle_m, 0.5 * height_m),
+            EnvelopeShape::Dome => (1.0, 0.0, 1.0, self.base_m, height_m),
+            EnvelopeShape::Cylinder => (0.0, 0.0, 1.0, middle_m, 0.5 * height_m),
+            EnvelopeShape::Cone => (-1.0, 0.0, 0.0, self.top_m, height_m),
+            EnvelopeShape::Paraboloid => (0.0, 1.0, 0.0, self.top_m, height_m),
+            EnvelopeShape::InvertedCone => (-1.0, 0.0, 0.0, self.base_m, height_m),
         };
-        Quadric { k, m, origin_m, unit: Vec3::new(self.radius_m, unit_m, self.radius_m) }
+        Quadric { k, l, m, origin_m, unit: Vec3::new(self.radius_m, unit_m, self.radius_m) }
     }
 }
 
 /// A row of the table at the top of this file.
 struct Quadric {
     k: f32,
+    l: f32,
     m: f32,
     origin_m: f32,
     unit: Vec3,
@@ -234,107 +242,4 @@ fn below_zero(a: f32, b: f32, c: f32) -> [Stretch; 2] {
 }
 
 #[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::tree::tests::strategies::SHAPES;
-
-    /// The shapes' outlines as schoolbooks write them, apart from the table of quadrics.
-    fn written_girth_m(envelope: &Envelope, height_m: f32) -> f32 {
-        let up = (height_m - envelope.base_m) / (envelope.top_m - envelope.base_m);
-        envelope.radius_m
-            * match envelope.shape {
-                EnvelopeShape::Ellipsoid => (1.0 - (2.0 * up - 1.0).powi(2)).max(0.0).sqrt(),
-                EnvelopeShape::Dome => (1.0 - up * up).max(0.0).sqrt(),
-                EnvelopeShape::Cylinder => 1.0,
-                EnvelopeShape::Cone => 1.0 - up,
-                EnvelopeShape::InvertedCone => up,
-            }
-    }
-
-    /// Slow oracle: walks along the ray and remembers the last place inside.
-    fn marched_exit_m(envelope: &Envelope, from: Vec3, direction: Vec3, step_m: f32) -> f32 {
-        let inside = |point: Vec3| {
-            (envelope.base_m..=envelope.top_m).contains(&point.y)
-                && point.x.hypot(point.z) <= written_girth_m(envelope, point.y)
-        };
-        let farthest = (4.0 * envelope.top_m.max(envelope.radius_m) / step_m) as usize;
-        let last = (0..farthest).rev().find(|&step| inside(from + direction * (step as f32 * step_m)));
-        last.map_or(0.0, |step| step as f32 * step_m)
-    }
-
-    fn shapes() -> impl Strategy<Value = EnvelopeShape> {
-        prop::sample::select(SHAPES.to_vec())
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(200))]
-
-        #[test]
-        fn exit_distances_agree_with_marching_along_the_ray(
-            shape in shapes(),
-            height in 0.0_f32..0.95,
-            azimuth in 0.0_f32..std::f32::consts::TAU,
-            elevation in -1.5_f32..1.5,
-            aside in (-0.6_f32..0.6, -0.6_f32..0.6),
-        ) {
-            let envelope = Envelope { shape, base_m: 2.0, top_m: 14.0, radius_m: 5.0 };
-            let off = Vec3::new(aside.0, 0.0, aside.1);
-            let from = Vec3::Y * (height * envelope.top_m) + off * written_girth_m(&envelope, height * envelope.top_m);
-            let (sin, cos) = elevation.sin_cos();
-            let direction = Vec3::new(cos * azimuth.cos(), sin, cos * azimuth.sin());
-            let step_m = 0.01;
-            let exit_m = envelope.exit_distance_m(from, direction);
-            let marched_m = marched_exit_m(&envelope, from, direction, step_m);
-            // The walker is late by up to a step, and may miss a corner cut by less than a step.
-            prop_assert!((exit_m - marched_m).abs() <= 3.0 * step_m, "{exit_m} against {marched_m}");
-        }
-    }
-
-    #[test]
-    fn depth_runs_from_the_surface_to_the_middle() {
-        let envelope = Envelope::default();
-        let rim = envelope.centre() + Vec3::X * envelope.radius_m;
-        assert!(envelope.depth(rim) < 1e-5);
-        assert_eq!(envelope.depth(envelope.centre()), 1.0);
-        assert_eq!(envelope.depth(rim * 3.0), 0.0);
-        let cone = Envelope { shape: EnvelopeShape::Cone, ..envelope };
-        assert_eq!(cone.depth(Vec3::Y * 5.0), 1.0);
-        assert!(cone.depth(Vec3::new(cone.girth_m(5.0), 5.0, 0.0)) < 1e-5);
-    }
-
-    #[test]
-    fn outward_is_a_unit_vector_even_in_the_middle() {
-        for shape in SHAPES {
-            let envelope = Envelope { shape, ..Envelope::default() };
-            for point in [envelope.centre(), Vec3::ZERO, Vec3::new(3.0, 7.0, -2.0)] {
-                assert!((envelope.outward(point).length() - 1.0).abs() < 1e-5);
-            }
-        }
-    }
-
-    #[test]
-    fn the_surface_lies_at_no_depth_and_at_the_girth() {
-        for shape in SHAPES {
-            let envelope = Envelope { shape, ..Envelope::default() };
-            for share in [0.03, 0.3, 0.5, 0.8, 0.97] {
-                let height_m = envelope.base_m + share * (envelope.top_m - envelope.base_m);
-                let girth_m = envelope.girth_m(height_m);
-                assert!((girth_m - written_girth_m(&envelope, height_m)).abs() < 1e-3, "{shape:?}");
-                let rim = Vec3::new(0.6 * girth_m, height_m, -0.8 * girth_m);
-                assert!(envelope.depth(rim) < 1e-3, "{shape:?} {share}: {}", envelope.depth(rim));
-                assert!(envelope.depth(rim * Vec3::new(0.5, 1.0, 0.5)) > 0.0);
-            }
-            assert_eq!([envelope.girth_m(0.0), envelope.girth_m(envelope.top_m + 0.1)], [0.0; 2]);
-        }
-    }
-
-    #[test]
-    fn an_envelope_around_points_holds_them() {
-        let points = [Vec3::new(1.0, 2.0, 0.0), Vec3::new(0.0, 9.0, 0.5), Vec3::new(-3.0, 4.0, 4.0)];
-        let around = Envelope::around(EnvelopeShape::Cylinder, points);
-        assert_eq!((around.base_m, around.top_m, around.radius_m), (2.0, 9.0, 5.0));
-        assert!(Envelope::around(EnvelopeShape::Cone, []).validate().is_err(), "nothing has grown");
-    }
-}
+mod tests;

@@ -37,6 +37,8 @@ pub struct Leaf {
     pub curl: f32,
     /// Side shoots of the spray, 0 to 40.
     pub shoots: u32,
+    /// Side shoots of each of these, 0 to 12: without them, a spray of needles is a fern's frond.
+    pub second_shoots: u32,
     /// Distance between leaves along a shoot as a share of a leaf's length, 0.05 to 2.
     pub spacing: f32,
     /// How mottled leaves are by a Fourier texture, as Zaharia colours his: 0 to 1.
@@ -75,6 +77,7 @@ impl Default for Leaf {
             vein_angle_deg: 45.0,
             curl: 0.5,
             shoots: 7,
+            second_shoots: 0,
             spacing: 0.42,
             mottle: 0.12,
             bare: 0.25,
@@ -95,6 +98,7 @@ impl Leaf {
         require("vein_angle_deg", self.vein_angle_deg, 10.0..=90.0)?;
         require("curl", self.curl, 0.0..=1.0)?;
         require("shoots", self.shoots as f32, 0.0..=40.0)?;
+        require("second_shoots", self.second_shoots as f32, 0.0..=12.0)?;
         require("spacing", self.spacing, 0.05..=2.0)?;
         require("mottle", self.mottle, 0.0..=1.0)?;
         require("bare", self.bare, 0.0..=0.9)

@@ -1,4 +1,4 @@
-//! Where the leaves of a spray sit: a main shoot, side shoots left and right by turns, leaves along them.
+//! Where the leaves of a spray sit: a main shoot, side shoots left and right by turns, perhaps side shoots of these, leaves along them.
 //!
 //! Coordinates are (along, across): along is 0 at the twig's root and 1 at its tip, across in the same unit, so
 //! that the texture holds the region `|across| <= min(along, 1 - along)`.
@@ -43,6 +43,9 @@ pub(super) struct PlacedLeaf {
 
 /// Angle of the side shoots to the twig, radians.
 const SHOOT_ANGLE_RAD: f32 = 0.85;
+/// Length of the first side shoot of a side shoot, by that shoot's.
+const SECOND_SHOOT_LENGTH: f32 = 0.7;
+const SECOND_SHOOT_RADIUS: f32 = 0.0025;
 /// Share of the leaves that show their underside where leaves curl fully.
 const TURNED_SHARE: f32 = 0.3;
 /// Angles of the leaves at a broad-leaved shoot's tip, radians.
@@ -63,7 +66,7 @@ pub(super) fn spray(leaf: &Leaf, seed: u64) -> (Vec<Shoot>, Vec<PlacedLeaf>) {
     (shoots, leaves)
 }
 
-/// The main shoot and its side shoots, left and right by turns, as long as the square allows.
+/// The main shoot, its side shoots, left and right by turns, as long as the square allows, and theirs.
 fn shoots(leaf: &Leaf, random: &mut Xoshiro256PlusPlus) -> Vec<Shoot> {
     let reach = 0.96 - 0.85 * leaf.length * (1.0 + leaf.stalk);
     let mut shoots = vec![Shoot { root: Vec2::ZERO, tip: Vec2::new(reach, 0.0), radius: 0.006 }];
@@ -78,7 +81,24 @@ fn shoots(leaf: &Leaf, random: &mut Xoshiro256PlusPlus) -> Vec<Shoot> {
         let length = room * random.random_range(0.6..1.0);
         shoots.push(Shoot { root, tip: root + direction * length, radius: 0.0035 });
     }
+    let seconds: Vec<Shoot> = shoots[1..].iter().flat_map(|shoot| second_shoots(shoot, leaf, random)).collect();
+    shoots.extend(seconds);
     shoots
+}
+
+/// The side shoots of a side shoot, shorter towards its tip.
+fn second_shoots(parent: &Shoot, leaf: &Leaf, random: &mut Xoshiro256PlusPlus) -> Vec<Shoot> {
+    let axis = (parent.tip - parent.root).normalize_or(Vec2::X);
+    let shoot = |index: u32, random: &mut Xoshiro256PlusPlus| {
+        let share = (index as f32 + random.random_range(0.2..0.8)) / leaf.second_shoots as f32;
+        let root = parent.root + axis * (parent.length() * (0.15 + 0.75 * share));
+        let side = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let direction = axis.rotate(Vec2::from_angle(side * SHOOT_ANGLE_RAD * random.random_range(0.65..1.1)));
+        let own = SECOND_SHOOT_LENGTH * parent.length() * (1.0 - 0.6 * share) * random.random_range(0.5..1.0);
+        let length = own.min(room(root, direction) - 0.85 * leaf.length);
+        (length > leaf.length).then(|| Shoot { root, tip: root + direction * length, radius: SECOND_SHOOT_RADIUS })
+    };
+    (0..leaf.second_shoots).filter_map(|index| shoot(index, random)).collect()
 }
 
 /// Distance from `root` along `direction` to the outline of the spray, to within a step.

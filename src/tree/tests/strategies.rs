@@ -45,12 +45,13 @@ fn orders() -> impl Strategy<Value = BranchOrder> {
     })
 }
 
-pub(in crate::tree) const SHAPES: [EnvelopeShape; 5] = [
+pub(in crate::tree) const SHAPES: [EnvelopeShape; 6] = [
     EnvelopeShape::Ellipsoid,
     EnvelopeShape::Cone,
     EnvelopeShape::Cylinder,
     EnvelopeShape::Dome,
     EnvelopeShape::InvertedCone,
+    EnvelopeShape::Paraboloid,
 ];
 
 pub(super) fn structures() -> impl Strategy<Value = AonoKunii> {

@@ -17,9 +17,9 @@ const SPECIES: [&str; 8] =
 /// Species whose crowns are a few large parts on a stiff frame. They hardly move from frame to frame, so an abrupt change is large
 /// beside their motion: except for the fade, their numbers are reported apart.
 const COARSE_CROWNS: [&str; 2] = ["billows", "impression_summer"];
-/// Points of a fade at which one frame of it is compared with the wind, as shares of its length. They reach beyond it, for an impostor goes
-/// by the height of its atlas, which is not quite the tree's.
-const FADE_POINTS: [f32; 11] = [-0.7, -0.4, -0.1, 0.1, 0.3, 0.5, 0.7, 0.9, 1.1, 1.4, 1.7];
+/// Points of a fade at which one frame of it is compared with the wind, as shares of its length. They reach well beyond it, for an impostor
+/// goes by the height of its atlas, which is up to an eighth more than the tree's.
+const FADE_POINTS: [f32; 12] = [-0.4, -0.1, 0.1, 0.3, 0.5, 0.7, 0.9, 1.1, 1.3, 1.5, 1.8, 2.1];
 /// Steps of the dither.
 const DITHER_STEPS: f32 = 1024.0;
 /// Way of a walker in a frame, m: 1.5 m/s at 60 frames/s.
@@ -120,7 +120,8 @@ fn measure_level(scene: &mut TestScene, change: usize, sheet: &mut ContactSheet)
     sheet.add(&full, scene.crop());
     sheet.add(&coarser, scene.crop());
     let wind = difference(&full, &later);
-    let fade = LevelOfDetail::default().fade;
+    let LevelOfDetail { fade, impostor_fade, .. } = LevelOfDetail::default();
+    let fade = if change == 2 { impostor_fade } else { fade };
     // A frame changes at least one step of the dither.
     let step = (2.0 * fade / DITHER_STEPS).max(STEP_M / scene.distance_m());
     let mut pop = 0.0_f64;
