@@ -1,7 +1,7 @@
 //! The envelope of a crown: a solid of revolution about the trunk that branches do not leave.
 //!
 //! Reeves & Blau (1985, section 3.1) bound their trees by an ellipsoid or a cone; a column, a dome, a vase and a paraboloid are
-//! added for the habits of poplars, pines, shrubs and firs. All are one quadric between two heights: with a point's coordinates
+//! added for the habits of poplars, pines and shrubs. All are one quadric between two heights: with a point's coordinates
 //! `x, z` in units of the radius and `y` in units of the height from the place given in the table,
 //!
 //! ```text
@@ -46,7 +46,7 @@ pub enum EnvelopeShape {
     Ellipsoid,
     /// A conifer's, its apex on top.
     Cone,
-    /// A fuller conifer's, blunt on top: half way up it has 0.71 of the radius, where a cone has 0.5.
+    /// Fuller and blunt on top, a juniper's: half way up it has 0.71 of the radius, where a cone has 0.5.
     Paraboloid,
     /// A column: a lombardy poplar's.
     Cylinder,
