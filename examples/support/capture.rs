@@ -117,6 +117,14 @@ pub fn step(app: &mut App) {
 /// What the device says.
 pub fn render_frame(app: &mut App) -> Result<(), String> {
     app.update();
+    finish_drawing(app)
+}
+
+/// Waits until the device has drawn all that it was given.
+///
+/// # Errors
+/// What the device says.
+pub fn finish_drawing(app: &App) -> Result<(), String> {
     let poll = PollType::Wait { submission_index: None, timeout: None };
     let polled = app.world().resource::<RenderDevice>().wgpu_device().poll(poll);
     polled.map(drop).map_err(|error| error.to_string())

@@ -1,19 +1,12 @@
 //! The camera that draws the panels, over whatever others draw to the same window or image.
 
-use super::{
-    panel_picture::{is_new, keep_picture, show_picture},
-    workbench::Workbench,
-};
+use super::panel_picture::{BLEND, keep_picture};
 use bevy::{
-    camera::{CameraMainTextureUsages, CameraOutputMode, RenderTarget, visibility::RenderLayers},
+    camera::{CameraOutputMode, RenderTarget, visibility::RenderLayers},
     core_pipeline::upscaling::upscaling,
     ecs::schedule::{ScheduleBuildSettings, ScheduleLabel},
     prelude::*,
-    render::{
-        RenderApp,
-        camera::CameraRenderGraph,
-        render_resource::{BlendState, TextureUsages},
-    },
+    render::{RenderApp, camera::CameraRenderGraph},
 };
 use bevy_egui::{
     EguiContexts, PrimaryEguiContext,
@@ -41,37 +34,25 @@ pub(super) fn plugin(app: &mut App) {
     let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
     let mut passes = Schedule::new(DrawPanels);
     passes.set_build_settings(ScheduleBuildSettings { auto_insert_apply_deferred: false, ..default() });
-    let paint = (prepare_egui_pass, egui_pass, keep_picture).chain().run_if(is_new);
-    passes.add_systems((paint, show_picture.run_if(not(is_new)), upscaling).chain());
+    passes.add_systems((prepare_egui_pass, egui_pass, keep_picture, upscaling).chain());
     render.add_schedule(passes);
 }
 
-/// Spawns the camera when the workbench is opened for the first time, and switches it off while it is closed.
-pub(super) fn switch_camera(
+/// Spawns the camera when the workbench is opened for the first time.
+pub(super) fn spawn_camera(
     mut commands: Commands,
-    workbench: Res<Workbench>,
     cameras: Query<(&RenderTarget, Option<&Msaa>), (With<Camera3d>, Without<PanelCamera>)>,
-    mut panels: Query<&mut Camera, With<PanelCamera>>,
+    panels: Query<(), With<PanelCamera>>,
 ) {
-    if let Ok(mut camera) = panels.single_mut() {
-        if camera.is_active != workbench.is_open {
-            camera.is_active = workbench.is_open;
-        }
-        return;
-    }
-    let Some((target, msaa)) = cameras.iter().next().filter(|_| workbench.is_open) else { return };
+    let Some((target, msaa)) = cameras.iter().next().filter(|_| panels.is_empty()) else { return };
     commands.spawn((
         PanelCamera,
         PrimaryEguiContext,
         CameraRenderGraph::new(DrawPanels),
-        CameraMainTextureUsages::default().with(TextureUsages::COPY_DST),
         Projection::Orthographic(OrthographicProjection::default_2d()),
         Camera {
             order: ORDER,
-            output_mode: CameraOutputMode::Write {
-                blend_state: Some(BlendState::ALPHA_BLENDING),
-                clear_color: ClearColorConfig::None,
-            },
+            output_mode: CameraOutputMode::Write { blend_state: Some(BLEND), clear_color: ClearColorConfig::None },
             clear_color: ClearColorConfig::Custom(Color::NONE),
             ..default()
         },

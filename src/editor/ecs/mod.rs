@@ -1,6 +1,7 @@
 //! The workbench in an app.
 
 mod camera;
+mod egui_rest;
 #[cfg(feature = "export")]
 mod export;
 mod land;
@@ -17,7 +18,8 @@ pub mod turntable;
 pub mod workbench;
 
 use self::{
-    camera::{scale_panels, switch_camera},
+    camera::{scale_panels, spawn_camera},
+    egui_rest::EguiRestPlugin,
     land::{note_view, show_land},
     manners::is_open,
     measure::{Measuring, measure_tip, measure_wind, note_costs, note_species_costs, point_at_tree, show_arrows},
@@ -72,7 +74,7 @@ impl Plugin for EditorPlugin {
     fn build(&self, app: &mut App) {
         require_plugin::<Self, TreeRenderPlugin>(app);
         if !app.is_plugin_added::<EguiPlugin>() {
-            app.add_plugins(EguiPlugin::default());
+            app.add_plugins((EguiPlugin::default(), EguiRestPlugin));
             let mut settings = app.world_mut().resource_mut::<EguiGlobalSettings>();
             settings.auto_create_primary_context = false;
             // What is typed or dragged in a panel is not meant for the game.
@@ -91,7 +93,7 @@ impl Plugin for EditorPlugin {
             .add_systems(
                 Update,
                 (
-                    switch_camera,
+                    spawn_camera.run_if(is_open),
                     (
                         apply_species.run_if(has_species_to_show),
                         (point_at_tree.run_if(is_pointing), measure_wind, measure_tip).run_if(is_open),

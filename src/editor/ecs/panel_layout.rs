@@ -2,10 +2,10 @@
 //!
 //! They are laid out when there is input, when egui asks for it (as while something fades in, or where a cursor blinks), when a program has
 //! changed the workbench, when the picture under handles moves, and some times a second for what changes by itself: counts, plots, progress.
-//! In between, the picture of what was painted last is shown (`panel_picture.rs`).
+//! In between their camera rests, and the picture of what was painted last is shown (`panel_picture.rs`).
 
-use super::{camera::PanelCamera, panel_picture::PanelsLaidOut, workbench::Workbench};
-use bevy::prelude::*;
+use super::{camera::PanelCamera, egui_rest::is_needed, workbench::Workbench};
+use bevy::{camera::RenderTarget, prelude::*};
 use bevy_egui::{
     EguiContextSettings, EguiFullOutput, EguiInput, EguiOutput, EguiPostUpdateSet, EguiPreUpdateSet,
     egui::{FullOutput, PlatformOutput, Rect, ViewportId},
@@ -30,33 +30,50 @@ struct PanelLayout {
 /// Adds the systems.
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<PanelLayout>()
-        .add_systems(PreUpdate, decide.after(EguiPreUpdateSet::ProcessInput).before(EguiPreUpdateSet::BeginPass))
+        .add_systems(
+            PreUpdate,
+            decide.after(EguiPreUpdateSet::ProcessInput).before(EguiPreUpdateSet::BeginPass).run_if(is_needed),
+        )
         .add_systems(
             PostUpdate,
-            keep_output.after(EguiPostUpdateSet::EndPass).before(EguiPostUpdateSet::ProcessOutput),
+            keep_output.after(EguiPostUpdateSet::EndPass).before(EguiPostUpdateSet::ProcessOutput).run_if(is_needed),
         );
 }
 
-/// Decides whether the panels are laid out in this frame. While the workbench is closed that is for input alone, which egui must not miss.
+/// Decides whether the panels are laid out and drawn in this frame. While the workbench is closed they are laid out for input alone, which
+/// egui must not miss. Where nobody else draws to their window, they are in every frame.
 fn decide(
     time: Res<Time<Real>>,
     workbench: Res<Workbench>,
     mut layout: ResMut<PanelLayout>,
-    mut panels: Query<(&mut EguiContextSettings, &EguiInput), With<PanelCamera>>,
+    mut panels: Query<(&mut Camera, &RenderTarget, &mut EguiContextSettings, &EguiInput), With<PanelCamera>>,
+    others: Query<(&Camera, &RenderTarget), Without<PanelCamera>>,
 ) {
-    let Ok((mut settings, input)) = panels.single_mut() else { return };
+    let Ok((mut camera, target, mut settings, input)) = panels.single_mut() else { return };
     let has_input = !input.events.is_empty() || !input.hovered_files.is_empty() || !input.dropped_files.is_empty();
     let has_handles = workbench.has_turntable || workbench.panel.is_of_land();
     let picture = workbench.land.view.as_ref().filter(|_| has_handles);
     let picture = picture.map_or(Mat4::IDENTITY, |view| view.clip_from_world);
     let has_moved = workbench.is_open && (picture != layout.picture || input.screen_rect != layout.screen);
-    let is_due = has_input || workbench.is_changed() || has_moved || time.elapsed() >= layout.next;
+    let is_alone = !others.iter().any(|(other, drawn_to)| other.is_active && is_same(drawn_to, target));
+    let is_waiting = has_input || workbench.is_changed() || has_moved || time.elapsed() >= layout.next;
+    let is_due = is_waiting || (is_alone && workbench.is_open);
     if is_due {
         (layout.picture, layout.screen) = (picture, input.screen_rect);
     }
     if settings.run_manually == is_due {
         settings.run_manually = !is_due;
     }
+    let is_drawn = is_due && workbench.is_open;
+    if camera.is_active != is_drawn {
+        camera.is_active = is_drawn;
+    }
+}
+
+/// Whether two cameras draw to the same. There is one primary window.
+fn is_same(one: &RenderTarget, other: &RenderTarget) -> bool {
+    let primary = Some(Entity::PLACEHOLDER);
+    one.normalize(primary) == other.normalize(primary)
 }
 
 /// Keeps what egui tells after a layout; without one, has it tell the same.
@@ -64,11 +81,9 @@ fn keep_output(
     time: Res<Time<Real>>,
     workbench: Res<Workbench>,
     mut layout: ResMut<PanelLayout>,
-    mut laid_out: ResMut<PanelsLaidOut>,
     mut panels: Query<(&EguiContextSettings, &EguiOutput, &mut EguiFullOutput), With<PanelCamera>>,
 ) {
     let Ok((settings, known, mut output)) = panels.single_mut() else { return };
-    laid_out.0 = !settings.run_manually;
     if settings.run_manually {
         output.0 = Some(FullOutput {
             platform_output: layout.told.clone(),
@@ -96,12 +111,13 @@ mod tests {
     fn app() -> App {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, plugin))
-            .init_resource::<PanelsLaidOut>()
             .insert_resource(TimeUpdateStrategy::ManualDuration(FRAME))
             .insert_resource(Workbench::new(None, None, None, false));
         app.world_mut().resource_mut::<Workbench>().is_open = true;
+        app.world_mut().spawn(Camera::default());
         app.world_mut().spawn((
             PanelCamera,
+            Camera::default(),
             EguiContextSettings::default(),
             EguiInput::default(),
             EguiOutput::default(),
@@ -115,9 +131,11 @@ mod tests {
         let world = app.world_mut();
         world.run_schedule(First);
         world.run_schedule(PreUpdate);
-        let mut panels = world.query::<(&EguiContextSettings, &mut EguiInput, &mut EguiFullOutput)>();
-        let (settings, mut input, mut output) = panels.single_mut(world).expect("a camera");
+        let is_open = world.resource::<Workbench>().is_open;
+        let mut panels = world.query::<(&Camera, &EguiContextSettings, &mut EguiInput, &mut EguiFullOutput)>();
+        let (camera, settings, mut input, mut output) = panels.single_mut(world).expect("a camera");
         let is_laid_out = !settings.run_manually;
+        assert_eq!(camera.is_active, is_laid_out && is_open);
         if is_laid_out {
             input.take();
             let mut laid_out = FullOutput::default();
@@ -127,7 +145,6 @@ mod tests {
         world.run_system_cached(keep_output).expect("it runs");
         let output = world.query::<&EguiFullOutput>().single(world).expect("a camera");
         assert!(output.0.is_some(), "egui always takes something");
-        assert_eq!(world.resource::<PanelsLaidOut>().0, is_laid_out);
         is_laid_out
     }
 
@@ -164,6 +181,16 @@ mod tests {
         assert!(!frame(&mut app, Duration::MAX));
         app.world_mut().resource_mut::<Workbench>().panel = crate::editor::ui::Panel::Wind;
         assert!(frame(&mut app, Duration::MAX));
+    }
+
+    #[test]
+    fn panels_that_nobody_else_draws_beneath_are_drawn_in_every_frame() {
+        let mut app = app();
+        layouts(&mut app, 5);
+        let world = app.world_mut();
+        let mut others = world.query_filtered::<&mut Camera, Without<PanelCamera>>();
+        others.single_mut(world).expect("another camera").is_active = false;
+        assert_eq!(layouts(&mut app, 20), 20);
     }
 
     #[test]

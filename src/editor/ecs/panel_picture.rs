@@ -1,79 +1,132 @@
-//! The picture of the panels, kept from one layout to the next. In between, egui's renderer, which uploads all that it is given in every frame,
-//! rests, and the picture is shown again.
+//! The picture of the panels, kept from one layout to the next. In between their camera rests, which costs half a millisecond with all that
+//! Bevy does for a camera, and the picture is laid over the window by itself.
 
+use super::{camera::PanelCamera, workbench::Workbench};
 use bevy::{
+    camera::{CompositingSpace, NormalizedRenderTarget, RenderTarget},
+    core_pipeline::{
+        blit::{BlitPipeline, BlitPipelineKey},
+        schedule::camera_driver,
+    },
     prelude::*,
     render::{
-        Extract, ExtractSchedule, RenderApp,
-        render_resource::{Texture, TextureDescriptor, TextureDimension, TextureUsages},
-        renderer::{RenderContext, RenderDevice, ViewQuery},
-        view::ViewTarget,
+        Extract, ExtractSchedule, GpuResourceAppExt, RenderApp,
+        camera::NormalizedRenderTargetExt,
+        render_asset::RenderAssets,
+        render_resource::{
+            BindGroup, BlendState, LoadOp, Operations, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
+            SpecializedRenderPipelines, StoreOp, Texture, TextureDescriptor, TextureDimension, TextureUsages,
+            TextureViewDescriptor,
+        },
+        renderer::{RenderContext, RenderDevice, RenderGraph, RenderGraphSystems, ViewQuery},
+        sync_world::MainEntity,
+        texture::{GpuImage, ManualTextureViews},
+        view::{ExtractedWindow, ResolvedCompositingSpace, ViewTarget},
     },
+    window::PrimaryWindow,
 };
 
-/// Whether panels were laid out in this frame, so that egui has something new to paint.
-#[derive(Resource, Default)]
-pub(super) struct PanelsLaidOut(pub bool);
+/// How panels are laid over what others have drawn.
+pub(super) const BLEND: BlendState = BlendState::ALPHA_BLENDING;
 
 /// What egui has painted last, in the render world.
 #[derive(Resource, Default)]
 pub(super) struct PanelPicture {
-    /// Whether egui paints in this frame.
-    is_new: bool,
-    kept: Option<Texture>,
+    kept: Option<Kept>,
+    /// Where it is shown in this frame.
+    shown_on: Option<NormalizedRenderTarget>,
+}
+
+struct Kept {
+    texture: Texture,
+    bind_group: BindGroup,
+    space: Option<CompositingSpace>,
 }
 
 /// Adds the picture to the render world.
 pub(super) fn plugin(app: &mut App) {
-    app.init_resource::<PanelsLaidOut>();
     let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
-    render.init_resource::<PanelPicture>().add_systems(ExtractSchedule, extract_is_new);
+    render
+        .init_resource::<PanelPicture>()
+        .init_gpu_resource::<PanelPicture>()
+        .add_systems(ExtractSchedule, extract_where_it_is_shown)
+        .add_systems(RenderGraph, show_picture.in_set(RenderGraphSystems::Render).after(camera_driver));
 }
 
-fn extract_is_new(laid_out: Extract<Res<PanelsLaidOut>>, mut picture: ResMut<PanelPicture>) {
-    picture.is_new = laid_out.0;
-}
-
-/// Whether egui paints in this frame.
-pub(super) fn is_new(picture: Res<PanelPicture>) -> bool {
-    picture.is_new
+fn extract_where_it_is_shown(
+    workbench: Extract<Res<Workbench>>,
+    panels: Extract<Query<(&Camera, &RenderTarget), With<PanelCamera>>>,
+    window: Extract<Query<Entity, With<PrimaryWindow>>>,
+    mut picture: ResMut<PanelPicture>,
+) {
+    let resting = panels.single().ok().filter(|(camera, _)| workbench.is_open && !camera.is_active);
+    picture.shown_on = resting.and_then(|(_, target)| target.normalize(window.single().ok()));
 }
 
 /// Keeps what egui has painted.
 pub(super) fn keep_picture(
-    view: ViewQuery<&ViewTarget>,
+    view: ViewQuery<(&ViewTarget, Option<&ResolvedCompositingSpace>)>,
     device: Res<RenderDevice>,
+    pipelines: Res<PipelineCache>,
+    blit: Res<BlitPipeline>,
     mut picture: ResMut<PanelPicture>,
     mut ctx: RenderContext,
 ) {
-    let painted = view.into_inner().main_texture();
-    let kept = picture.kept.take().filter(|kept| are_alike(kept, painted)).unwrap_or_else(|| {
-        device.create_texture(&TextureDescriptor {
+    let (view, space) = view.into_inner();
+    let painted = view.main_texture();
+    let is_alike = |kept: &Kept| kept.texture.size() == painted.size() && kept.texture.format() == painted.format();
+    if !picture.kept.as_ref().is_some_and(is_alike) {
+        let texture = device.create_texture(&TextureDescriptor {
             label: Some("picture of the panels"),
             size: painted.size(),
             mip_level_count: 1,
             sample_count: 1,
             dimension: TextureDimension::D2,
             format: painted.format(),
-            usage: TextureUsages::COPY_SRC | TextureUsages::COPY_DST,
+            usage: TextureUsages::COPY_DST | TextureUsages::TEXTURE_BINDING,
             view_formats: &[],
-        })
+        });
+        let view = texture.create_view(&TextureViewDescriptor::default());
+        let bind_group = blit.create_bind_group(&device, &view, &pipelines);
+        picture.kept = Some(Kept { texture, bind_group, space: ResolvedCompositingSpace::space(space) });
+    }
+    let Some(Kept { texture, .. }) = &picture.kept else { return };
+    ctx.command_encoder().copy_texture_to_texture(painted.as_image_copy(), texture.as_image_copy(), painted.size());
+}
+
+/// Shows what was kept, in the way in which Bevy lays what a camera has drawn over its window.
+fn show_picture(
+    picture: Res<PanelPicture>,
+    windows: Query<(MainEntity, &ExtractedWindow)>,
+    images: Res<RenderAssets<GpuImage>>,
+    others: Res<ManualTextureViews>,
+    blit: Res<BlitPipeline>,
+    mut variants: ResMut<SpecializedRenderPipelines<BlitPipeline>>,
+    pipelines: Res<PipelineCache>,
+    mut ctx: RenderContext,
+) {
+    let PanelPicture { kept: Some(kept), shown_on: Some(target) } = &*picture else { return };
+    let Some(target_format) = target.get_texture_view_format(&windows, &images, &others) else { return };
+    let Some(view) = target.get_texture_view(&windows, &images, &others) else { return };
+    // The same as the camera's own, so it has been compiled.
+    let key = BlitPipelineKey { target_format, blend_state: Some(BLEND), samples: 1, source_space: kept.space };
+    let pipeline = variants.specialize(&pipelines, &blit, key);
+    let Some(pipeline) = pipelines.get_render_pipeline(pipeline) else { return };
+    let attachment = RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: Operations { load: LoadOp::Load, store: StoreOp::Store },
+    };
+    let mut pass = ctx.command_encoder().begin_render_pass(&RenderPassDescriptor {
+        label: Some("panels"),
+        color_attachments: &[Some(attachment)],
+        depth_stencil_attachment: None,
+        timestamp_writes: None,
+        occlusion_query_set: None,
+        multiview_mask: None,
     });
-    copy(painted, &kept, &mut ctx);
-    picture.kept = Some(kept);
-}
-
-/// Shows what was kept. Where the window has changed since, a layout is due anyway.
-pub(super) fn show_picture(view: ViewQuery<&ViewTarget>, picture: Res<PanelPicture>, mut ctx: RenderContext) {
-    let shown = view.into_inner().main_texture();
-    let Some(kept) = picture.kept.as_ref().filter(|kept| are_alike(kept, shown)) else { return };
-    copy(kept, shown, &mut ctx);
-}
-
-fn are_alike(one: &Texture, other: &Texture) -> bool {
-    one.size() == other.size() && one.format() == other.format()
-}
-
-fn copy(from: &Texture, to: &Texture, ctx: &mut RenderContext) {
-    ctx.command_encoder().copy_texture_to_texture(from.as_image_copy(), to.as_image_copy(), from.size());
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, &kept.bind_group, &[]);
+    pass.draw(0..3, 0..1);
 }
