@@ -1,17 +1,12 @@
 //! The camera that draws the panels, over whatever others draw to the same window or image.
 
-use super::panel_picture::{BLEND, keep_picture};
 use bevy::{
     camera::{CameraOutputMode, RenderTarget, visibility::RenderLayers},
-    core_pipeline::upscaling::upscaling,
-    ecs::schedule::{ScheduleBuildSettings, ScheduleLabel},
+    ecs::schedule::ScheduleLabel,
     prelude::*,
-    render::{RenderApp, camera::CameraRenderGraph},
+    render::{camera::CameraRenderGraph, render_resource::BlendState},
 };
-use bevy_egui::{
-    EguiContexts, PrimaryEguiContext,
-    render::{egui_pass, prepare_egui_pass},
-};
+use bevy_egui::{EguiContexts, PrimaryEguiContext};
 
 /// The camera of the panels.
 #[derive(Component)]
@@ -19,8 +14,10 @@ pub(super) struct PanelCamera;
 
 /// What is drawn for the camera of the panels: these alone. What Bevy does for any other camera costs as much as the panels themselves.
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
-struct DrawPanels;
+pub(super) struct DrawPanels;
 
+/// How panels are laid over what others have drawn.
+pub(super) const BLEND: BlendState = BlendState::ALPHA_BLENDING;
 /// It draws after all others.
 const ORDER: isize = 1000;
 /// The window that panels are made for, points. In larger ones they grow by half as much as the window.
@@ -28,15 +25,6 @@ const MADE_FOR: Vec2 = Vec2::new(1280.0, 720.0);
 const GROWTH: f32 = 0.5;
 /// Steps of their size: letters are drawn anew for each.
 const ZOOM_STEP: f32 = 0.25;
-
-/// Adds the passes.
-pub(super) fn plugin(app: &mut App) {
-    let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
-    let mut passes = Schedule::new(DrawPanels);
-    passes.set_build_settings(ScheduleBuildSettings { auto_insert_apply_deferred: false, ..default() });
-    passes.add_systems((prepare_egui_pass, egui_pass, keep_picture, upscaling).chain());
-    render.add_schedule(passes);
-}
 
 /// Spawns the camera when the workbench is opened for the first time.
 pub(super) fn spawn_camera(

@@ -88,7 +88,7 @@ impl Plugin for EditorPlugin {
             .init_resource::<AppliedPlan>()
             .init_resource::<BuiltGround>()
             .init_resource::<Measuring>()
-            .add_plugins((camera::plugin, manners::plugin, panel_layout::plugin, panel_picture::plugin))
+            .add_plugins((manners::plugin, panel_layout::plugin, panel_picture::plugin))
             .add_systems(PreUpdate, scale_panels.run_if(is_open))
             .add_systems(
                 Update,

@@ -1,37 +1,35 @@
 //! The picture of the panels, kept from one layout to the next. In between their camera rests, which costs half a millisecond with all that
 //! Bevy does for a camera, and the picture is laid over the window by itself.
 
-use super::{camera::PanelCamera, workbench::Workbench};
+use super::{
+    camera::{BLEND, DrawPanels, PanelCamera},
+    workbench::Workbench,
+};
 use bevy::{
     camera::{CompositingSpace, NormalizedRenderTarget, RenderTarget},
     core_pipeline::{
         blit::{BlitPipeline, BlitPipelineKey},
         schedule::camera_driver,
+        upscaling::upscaling,
     },
+    ecs::schedule::ScheduleBuildSettings,
     prelude::*,
     render::{
         Extract, ExtractSchedule, GpuResourceAppExt, RenderApp,
-        camera::NormalizedRenderTargetExt,
-        render_asset::RenderAssets,
         render_resource::{
-            BindGroup, BlendState, LoadOp, Operations, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
-            SpecializedRenderPipelines, StoreOp, Texture, TextureDescriptor, TextureDimension, TextureUsages,
-            TextureViewDescriptor,
+            BindGroup, PipelineCache, RenderPassDescriptor, SpecializedRenderPipelines, Texture, TextureDescriptor,
+            TextureDimension, TextureUsages, TextureViewDescriptor,
         },
         renderer::{RenderContext, RenderDevice, RenderGraph, RenderGraphSystems, ViewQuery},
-        sync_world::MainEntity,
-        texture::{GpuImage, ManualTextureViews},
-        view::{ExtractedWindow, ResolvedCompositingSpace, ViewTarget},
+        view::{ResolvedCompositingSpace, ViewTarget, ViewTargetAttachments},
     },
     window::PrimaryWindow,
 };
-
-/// How panels are laid over what others have drawn.
-pub(super) const BLEND: BlendState = BlendState::ALPHA_BLENDING;
+use bevy_egui::render::{egui_pass, prepare_egui_pass};
 
 /// What egui has painted last, in the render world.
 #[derive(Resource, Default)]
-pub(super) struct PanelPicture {
+struct PanelPicture {
     kept: Option<Kept>,
     /// Where it is shown in this frame.
     shown_on: Option<NormalizedRenderTarget>,
@@ -43,10 +41,14 @@ struct Kept {
     space: Option<CompositingSpace>,
 }
 
-/// Adds the picture to the render world.
+/// Adds the picture to the render world, and the passes of the panels' camera.
 pub(super) fn plugin(app: &mut App) {
     let Some(render) = app.get_sub_app_mut(RenderApp) else { return };
+    let mut passes = Schedule::new(DrawPanels);
+    passes.set_build_settings(ScheduleBuildSettings { auto_insert_apply_deferred: false, ..default() });
+    passes.add_systems((prepare_egui_pass, egui_pass, keep_picture, upscaling).chain());
     render
+        .add_schedule(passes)
         .init_resource::<PanelPicture>()
         .init_gpu_resource::<PanelPicture>()
         .add_systems(ExtractSchedule, extract_where_it_is_shown)
@@ -64,7 +66,7 @@ fn extract_where_it_is_shown(
 }
 
 /// Keeps what egui has painted.
-pub(super) fn keep_picture(
+fn keep_picture(
     view: ViewQuery<(&ViewTarget, Option<&ResolvedCompositingSpace>)>,
     device: Res<RenderDevice>,
     pipelines: Res<PipelineCache>,
@@ -97,30 +99,27 @@ pub(super) fn keep_picture(
 /// Shows what was kept, in the way in which Bevy lays what a camera has drawn over its window.
 fn show_picture(
     picture: Res<PanelPicture>,
-    windows: Query<(MainEntity, &ExtractedWindow)>,
-    images: Res<RenderAssets<GpuImage>>,
-    others: Res<ManualTextureViews>,
+    targets: Res<ViewTargetAttachments>,
     blit: Res<BlitPipeline>,
     mut variants: ResMut<SpecializedRenderPipelines<BlitPipeline>>,
     pipelines: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
     let PanelPicture { kept: Some(kept), shown_on: Some(target) } = &*picture else { return };
-    let Some(target_format) = target.get_texture_view_format(&windows, &images, &others) else { return };
-    let Some(view) = target.get_texture_view(&windows, &images, &others) else { return };
+    // It is there where another camera has drawn to it, and is another one while a picture of it is taken.
+    let Some(target) = targets.get(target) else { return };
     // The same as the camera's own, so it has been compiled.
-    let key = BlitPipelineKey { target_format, blend_state: Some(BLEND), samples: 1, source_space: kept.space };
+    let key = BlitPipelineKey {
+        target_format: target.view_format,
+        blend_state: Some(BLEND),
+        samples: 1,
+        source_space: kept.space,
+    };
     let pipeline = variants.specialize(&pipelines, &blit, key);
     let Some(pipeline) = pipelines.get_render_pipeline(pipeline) else { return };
-    let attachment = RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: Operations { load: LoadOp::Load, store: StoreOp::Store },
-    };
     let mut pass = ctx.command_encoder().begin_render_pass(&RenderPassDescriptor {
         label: Some("panels"),
-        color_attachments: &[Some(attachment)],
+        color_attachments: &[Some(target.get_attachment(None))],
         depth_stencil_attachment: None,
         timestamp_writes: None,
         occlusion_query_set: None,
