@@ -5,11 +5,7 @@ use crate::{report::Report, support::capture};
 use bevy::{
     diagnostic::{Diagnostic, DiagnosticPath, DiagnosticsStore},
     prelude::*,
-    render::{
-        diagnostic::RenderDiagnosticsPlugin,
-        render_resource::PollType,
-        renderer::{RenderAdapterInfo, RenderDevice},
-    },
+    render::{diagnostic::RenderDiagnosticsPlugin, renderer::RenderAdapterInfo},
     time::TimeUpdateStrategy,
 };
 use bevy_windwood::{
@@ -112,9 +108,7 @@ fn render_frames(app: &mut App, frames: u32) -> Result<[f64; 2], String> {
         app.update();
         systems += app.world().resource::<SystemTimes>().total();
     }
-    let poll = PollType::Wait { submission_index: None, timeout: None };
-    let device = app.world().resource::<RenderDevice>().wgpu_device();
-    device.poll(poll).map_err(|error| error.to_string())?;
+    capture::finish_drawing(app)?;
     Ok([start.elapsed(), systems].map(|sum| sum.as_secs_f64() * 1e3 / f64::from(frames)))
 }
 

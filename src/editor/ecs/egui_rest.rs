@@ -55,7 +55,8 @@ impl Plugin for EguiRestPlugin {
     }
 }
 
-/// Has egui's renderer prepare something only where a camera shows it. It has no sets that could be told so, and adds some systems twice.
+/// Has egui's renderer prepare something only where a camera shows it. Its systems are in no set of their own that could be told so, so they
+/// are taken out and added again.
 fn let_renderer_rest(render: &mut SubApp) -> Result<(), ScheduleError> {
     remove(render, prepare_egui_transforms_system)?;
     remove(render, prepare_egui_render_target_data_system)?;
@@ -95,10 +96,7 @@ fn watch_closed_egui(
         || buttons.is_some_and(|buttons| buttons.get_pressed().len() > 0)
         || touches.is_some_and(|touches| touches.iter().next().is_some());
     let is_closing = closed.frames < CLOSING_FRAMES || (closed.is_awake && is_held);
-    let is_awake = is_closing || !others.is_empty();
-    if closed.is_awake != is_awake {
-        closed.is_awake = is_awake;
-    }
+    closed.is_awake = is_closing || !others.is_empty();
 }
 
 #[cfg(test)]

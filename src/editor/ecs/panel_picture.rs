@@ -49,6 +49,7 @@ pub(super) fn plugin(app: &mut App) {
     passes.add_systems((prepare_egui_pass, egui_pass, keep_picture, upscaling).chain());
     render
         .add_schedule(passes)
+        // It is there for the first extraction, which comes before any device, and is made anew with each device.
         .init_resource::<PanelPicture>()
         .init_gpu_resource::<PanelPicture>()
         .add_systems(ExtractSchedule, extract_where_it_is_shown)
